@@ -1,0 +1,16 @@
+# A core library must not need middleware, nor another stage's core, at link time.
+# cmake -DLIBRARY=libX.so -DALLOWED="goshawk_core;..." -P goshawk_no_middleware_test.cmake
+execute_process(COMMAND readelf -d ${LIBRARY} OUTPUT_VARIABLE dynamic COMMAND_ERROR_IS_FATAL ANY)
+string(REGEX MATCHALL "Shared library: \\[[^]]*\\]" needed "${dynamic}")
+if(NOT needed)
+  message(FATAL_ERROR "${LIBRARY} names no shared library at all: is it one?")
+endif()
+foreach(entry IN LISTS needed)
+  if(entry MATCHES "fastrtps|fastdds|fastcdr|ddsc|goshawk_msgs|goshawk_runtime|goshawk_conversions")
+    message(FATAL_ERROR "${LIBRARY} links middleware: ${entry}")
+  endif()
+  if(entry MATCHES "libgoshawk_([a-z_]+)\\.so" AND NOT "goshawk_${CMAKE_MATCH_1}" IN_LIST ALLOWED)
+    message(FATAL_ERROR "${LIBRARY} links another stage: ${entry}")
+  endif()
+endforeach()
+message(STATUS "${LIBRARY} needs only: ${needed}")

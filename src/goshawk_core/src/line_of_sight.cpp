@@ -1,0 +1,99 @@
+#include "goshawk/core/line_of_sight.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace goshawk {
+namespace {
+
+constexpr double kSlack = 1e-9;  // [voxel edges] a cube this near to the segment counts as met
+
+struct Range {
+  int first;
+  int last;
+};
+
+// Indices of the closed unit intervals [i, i + 1] that meet the closed interval [lo, hi].
+Range intervals_met(double lo, double hi) {
+  return {int(std::ceil(lo - kSlack)) - 1, int(std::floor(hi + kSlack))};
+}
+
+struct Interval {
+  double lo;
+  double hi;
+};
+
+// The part of the segment a + t (b - a), t in [t0, t1], whose coordinate `axis` lies in
+// [lo, hi], as an interval of t; empty (lo > hi) where there is none.
+Interval clip(const Vec3& a, const Vec3& d, int axis, double lo, double hi, Interval t) {
+  if (std::abs(d[axis]) < 1e-15) {
+    return a[axis] >= lo && a[axis] <= hi ? t : Interval{1.0, 0.0};
+  }
+  double u = (lo - a[axis]) / d[axis];
+  double v = (hi - a[axis]) / d[axis];
+  if (u > v) std::swap(u, v);
+  return {std::max(t.lo, u), std::min(t.hi, v)};
+}
+
+Interval extent(const Vec3& a, const Vec3& d, int axis, Interval t) {
+  const double u = a[axis] + d[axis] * t.lo;
+  const double v = a[axis] + d[axis] * t.hi;
+  return {std::min(u, v), std::max(u, v)};
+}
+
+// Slabs along the longest axis, rows within a slab, voxels within a row: each cut is taken of
+// the segment itself, with slack, so that no cube that is met is missed.
+template <typename Visit>  // bool Visit(Index3): false stops
+bool walk(const Vec3& a, const Vec3& b, const Visit& visit) {
+  const Vec3 d = b - a;
+  int u = 0;
+  d.cwiseAbs().maxCoeff(&u);
+  const int v = (u + 1) % 3;
+  const int w = (u + 2) % 3;
+  const Interval whole{0.0, 1.0};
+  const Interval along = extent(a, d, u, whole);
+  const Range slabs = intervals_met(along.lo, along.hi);
+  const bool forward = d[u] >= 0.0;
+  for (int n = 0; n <= slabs.last - slabs.first; ++n) {
+    const int i = forward ? slabs.first + n : slabs.last - n;
+    const Interval t = clip(a, d, u, i - kSlack, i + 1 + kSlack, whole);
+    if (t.lo > t.hi) continue;
+    const Interval across = extent(a, d, v, t);
+    const Range rows = intervals_met(across.lo, across.hi);
+    for (int j = rows.first; j <= rows.last; ++j) {
+      const Interval s = clip(a, d, v, j - kSlack, j + 1 + kSlack, t);
+      if (s.lo > s.hi) continue;
+      const Interval rest = extent(a, d, w, s);
+      const Range cells = intervals_met(rest.lo, rest.hi);
+      for (int k = cells.first; k <= cells.last; ++k) {
+        int index[3];
+        index[u] = i;
+        index[v] = j;
+        index[w] = k;
+        if (!visit(Index3{index[0], index[1], index[2]})) return false;
+      }
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+bool line_is_free(const BitGrid& blocked, const Vec3& a, const Vec3& b) {
+  return walk(a, b, [&](Index3 i) { return !blocked.test(i); });
+}
+
+bool line_is_free(const VoxelGrid& grid, const Vec3& a_map, const Vec3& b_map) {
+  return line_is_free(grid.occupied, grid.geometry.to_grid(a_map), grid.geometry.to_grid(b_map));
+}
+
+std::vector<Index3> supercover(const Vec3& a, const Vec3& b) {
+  std::vector<Index3> cells;
+  walk(a, b, [&](Index3 i) {
+    cells.push_back(i);
+    return true;
+  });
+  return cells;
+}
+
+}  // namespace goshawk

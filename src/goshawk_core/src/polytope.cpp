@@ -1,0 +1,154 @@
+#include "goshawk/core/polytope.hpp"
+
+#include <Eigen/LU>
+#include <cmath>
+#include <limits>
+#include <span>
+
+namespace goshawk {
+namespace {
+
+using Vec4 = Eigen::Vector4d;
+
+// Maximise r subject to n . x + r <= b: a linear programme in (x, r). Solved by the simplex
+// method on its dual, whose basis is four constraints and whose multipliers are the current
+// (x, r): the constraint most violated by it enters. Starts from a tetrahedron so large that it
+// only stays in the basis where the polytope is unbounded.
+class LargestBall {
+ public:
+  explicit LargestBall(std::span<const Polytope* const> polytopes) : polytopes_(polytopes) {}
+
+  Ball solve() {
+    const double far = 1e6;
+    const double s = 1.0 / std::sqrt(3.0);
+    set_basis(0, Vec4(-1, 0, 0, 1), far);
+    set_basis(1, Vec4(0, -1, 0, 1), far);
+    set_basis(2, Vec4(0, 0, -1, 1), far);
+    set_basis(3, Vec4(s, s, s, 1), far);
+    for (int iteration = 0; iteration < 1000; ++iteration) {
+      const Eigen::FullPivLU<Eigen::Matrix4d> lu(basis_);
+      point_ = lu.solve(bound_);
+      // Most violated first (few iterations); after many, first violated (cannot cycle for long).
+      if (!find_entering(iteration > 200)) break;
+      const Vec4 weights = basis_.transpose().fullPivLu().solve(Vec4(0, 0, 0, 1));
+      const Vec4 direction = basis_.transpose().fullPivLu().solve(entering_);
+      int leaving = -1;
+      double best = std::numeric_limits<double>::infinity();
+      for (int i = 0; i < 4; ++i) {
+        if (direction[i] > 1e-12 && weights[i] / direction[i] < best) {
+          best = weights[i] / direction[i];
+          leaving = i;
+        }
+      }
+      if (leaving < 0) break;  // cannot be with finite data: the dual is bounded
+      set_basis(leaving, entering_, entering_bound_);
+    }
+    return {point_.head<3>(), point_[3]};
+  }
+
+ private:
+  void set_basis(int i, const Vec4& row, double bound) {
+    basis_.row(i) = row;
+    bound_[i] = bound;
+  }
+
+  bool find_entering(bool first) {
+    double worst = 1e-12 * (1.0 + point_.head<3>().cwiseAbs().maxCoeff());
+    bool found = false;
+    for (const Polytope* polytope : polytopes_) {
+      for (int i = 0; i < polytope->faces(); ++i) {
+        const double excess =
+            polytope->A.row(i).dot(point_.head<3>()) + point_[3] - polytope->b[i];
+        if (excess <= worst) continue;
+        worst = excess;
+        entering_ << polytope->A.row(i).transpose(), 1.0;
+        entering_bound_ = polytope->b[i];
+        found = true;
+        if (first) return true;
+      }
+    }
+    return found;
+  }
+
+  std::span<const Polytope* const> polytopes_;
+  Eigen::Matrix4d basis_;
+  Vec4 bound_;
+  Vec4 point_;
+  Vec4 entering_;
+  double entering_bound_ = 0.0;
+};
+
+}  // namespace
+
+void Polytope::add(const Vec3& outward_normal, double offset_m) {
+  A.conservativeResize(faces() + 1, 3);
+  b.conservativeResize(A.rows());
+  A.row(A.rows() - 1) = outward_normal;
+  b[A.rows() - 1] = offset_m;
+}
+
+Status Polytope::check() const {
+  if (A.rows() != b.size() || A.rows() == 0) {
+    return fail(ErrorCode::invalid_input, "a polytope has " + std::to_string(A.rows()) +
+                                              " normals and " + std::to_string(b.size()) +
+                                              " offsets: equal numbers above zero are needed");
+  }
+  if (!A.allFinite() || !b.allFinite()) {
+    return fail(ErrorCode::invalid_input, "a polytope has a face that is not finite");
+  }
+  if ((A.rowwise().norm().array() - 1.0).abs().maxCoeff() > 1e-6) {
+    return fail(ErrorCode::invalid_input, "a polytope has a normal that is not of length 1");
+  }
+  return success();
+}
+
+Polytope Polytope::box(const Vec3& lower_map, const Vec3& upper_map) {
+  Polytope polytope;
+  polytope.A.resize(6, 3);
+  polytope.b.resize(6);
+  polytope.A << Eigen::Matrix3d::Identity(), -Eigen::Matrix3d::Identity();
+  polytope.b << upper_map, -lower_map;
+  return polytope;
+}
+
+Ball chebyshev_ball(const Polytope& polytope) {
+  const Polytope* const parts[] = {&polytope};
+  return LargestBall(parts).solve();
+}
+
+Ball chebyshev_ball(const Polytope& a, const Polytope& b) {
+  const Polytope* const parts[] = {&a, &b};
+  return LargestBall(parts).solve();
+}
+
+double Corridor::min_overlap_radius_m() const {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Ball& ball : overlaps) least = std::min(least, ball.radius_m);
+  return least;
+}
+
+Status Corridor::check() const {
+  if (polytopes.empty() || waypoints_map.size() != polytopes.size() + 1 ||
+      overlaps.size() + 1 != polytopes.size()) {
+    return fail(ErrorCode::invalid_input,
+                "a corridor of " + std::to_string(polytopes.size()) + " polytopes has " +
+                    std::to_string(waypoints_map.size()) + " waypoints and " +
+                    std::to_string(overlaps.size()) + " overlaps: n, n + 1 and n - 1 are needed");
+  }
+  for (std::size_t k = 0; k < polytopes.size(); ++k) {
+    if (auto status = polytopes[k].check(); !status) {
+      return fail(status.error().code,
+                  "polytope " + std::to_string(k) + ": " + status.error().message);
+    }
+    for (const std::size_t end : {k, k + 1}) {
+      if (!(polytopes[k].violation(waypoints_map[end]) <= 1e-6)) {
+        return fail(ErrorCode::invalid_input,
+                    "waypoint " + std::to_string(end) + " " + to_text(waypoints_map[end]) +
+                        " lies outside polytope " + std::to_string(k) + " or is not finite");
+      }
+    }
+  }
+  return success();
+}
+
+}  // namespace goshawk

@@ -1,0 +1,17 @@
+#include "goshawk/core/vector.hpp"
+
+#include <cstdio>
+
+namespace goshawk {
+
+std::string to_text(const Vec3& p) {
+  char text[96];
+  std::snprintf(text, sizeof text, "(%.3f, %.3f, %.3f)", p.x(), p.y(), p.z());
+  return text;
+}
+
+std::string to_text(Index3 i) {
+  return "(" + std::to_string(i.x) + ", " + std::to_string(i.y) + ", " + std::to_string(i.z) + ")";
+}
+
+}  // namespace goshawk
