@@ -1,0 +1,109 @@
+// goshawk_container COMPONENT[:NODE_NAME] ... [--ros-args ...]: one or many components in one
+// process, each with a node and a thread of its own.
+
+#include <pthread.h>
+#include <signal.h>
+
+#include <cstdio>
+#include <thread>
+
+#include "goshawk/runtime/component.hpp"
+
+namespace {
+
+using namespace goshawk;
+using namespace goshawk::runtime;
+
+constexpr int kWrongCall = 2;
+
+struct Wanted {
+  std::string component;
+  std::string node;
+};
+
+int complain(const Error& error) {
+  std::fprintf(stderr, "goshawk_container: %s: %s\n", std::string(to_string(error.code)).c_str(),
+               error.message.c_str());
+  return kWrongCall;
+}
+
+Result<std::vector<Wanted>> wanted_components(const std::vector<std::string>& arguments,
+                                              const RosArgs& ros_args) {
+  std::vector<Wanted> wanted;
+  for (const auto& argument : arguments) {
+    const auto colon = argument.find(':');
+    const std::string component = argument.substr(0, colon);
+    wanted.push_back({component, colon == std::string::npos ? component
+                                                            : argument.substr(colon + 1)});
+  }
+  if (wanted.empty()) {
+    return fail(ErrorCode::invalid_input,
+                "no component named; usage: goshawk_container COMPONENT[:NODE_NAME] ... "
+                "[--ros-args -r from:=to -p name:=value --params-file FILE]");
+  }
+  if (!ros_args.node_name.empty()) {
+    if (wanted.size() > 1) {
+      return fail(ErrorCode::invalid_input,
+                  "__node names one node, but several components were asked for: write "
+                  "COMPONENT:NODE_NAME");
+    }
+    wanted.front().node = ros_args.node_name;
+  }
+  return wanted;
+}
+
+struct Running {
+  std::unique_ptr<Node> node;
+  std::unique_ptr<Component> component;
+  std::thread thread;
+};
+
+int run(const std::vector<Wanted>& wanted, const RosArgs& ros_args, const sigset_t& signals) {
+  auto options = ContextOptions::from_environment();
+  if (!options) return complain(options.error());
+  const std::string prefix = ros_args.node_namespace == "/" ? "" : ros_args.node_namespace;
+  for (const auto& w : wanted) options->node_names.push_back(prefix + "/" + w.node);
+  auto context = Context::create(*options);
+  if (!context) return complain(context.error());
+
+  std::vector<Running> running;
+  for (const auto& w : wanted) {
+    auto component = load_component(w.component);
+    if (!component) return complain(component.error());
+    Running r;
+    r.node = std::make_unique<Node>(**context, w.node, ros_args);
+    try {
+      r.component = (*component)->create(*r.node);
+    } catch (const StartupFault& fault) {
+      return complain(fault.error());
+    }
+    running.push_back(std::move(r));
+  }
+  for (auto& r : running) {
+    r.thread = std::thread([node = r.node.get()] { node->spin(); });
+  }
+  int signal = 0;
+  sigwait(&signals, &signal);
+  for (auto& r : running) r.node->stop();
+  for (auto& r : running) r.thread.join();
+  for (auto& r : running) r.component.reset();
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  // Blocked in every thread, taken by sigwait alone.
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGTERM);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+
+  std::vector<std::string> arguments(argv + 1, argv + argc);
+  auto ros_args = RosArgs::extract(arguments);
+  if (!ros_args) return complain(ros_args.error());
+  auto wanted = wanted_components(arguments, *ros_args);
+  if (!wanted) return complain(wanted.error());
+  return run(*wanted, *ros_args, signals);
+}

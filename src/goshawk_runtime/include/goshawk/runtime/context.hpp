@@ -1,0 +1,65 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "goshawk/core/result.hpp"
+
+namespace goshawk::runtime {
+
+struct ContextOptions {
+  int domain = 0;                         // 0 to 232
+  std::string interfaces = "loopback";    // "loopback", "all", or IPv4 addresses with commas
+  std::vector<std::string> node_names;    // full names, for `goshawk node list`
+
+  /// ROS_DOMAIN_ID and GOSHAWK_INTERFACES, where they are set.
+  /// @return invalid_parameter for a domain that is no number from 0 to 232
+  static Result<ContextOptions> from_environment();
+};
+
+/// What is in the domain at one moment.
+struct EndpointInfo {
+  std::string topic;        // as ROS names it: "/uav1/path"
+  std::string type;         // "goshawk_msgs/msg/Path"
+  std::string participant;  // guid prefix
+  bool writer = false;
+  bool reliable = false;
+  bool transient_local = false;
+};
+struct ParticipantInfo {
+  std::string guid_prefix;
+  std::string name;
+  std::vector<std::string> nodes;
+};
+
+/// One DDS participant: a process' membership in a domain.
+///
+/// An XML profile file (FASTRTPS_DEFAULT_PROFILES_FILE) with a default participant profile
+/// decides alone about transports; else they are UDP on the chosen interfaces, by default on
+/// loopback only, found without multicast.
+class Context {
+ public:
+  struct Impl;
+
+  /// @return io_failed with a sentence where the domain cannot be joined
+  static Result<std::unique_ptr<Context>> create(const ContextOptions& options);
+  ~Context();
+
+  int domain() const;
+  std::vector<ParticipantInfo> participants() const;  // others, not this one
+  std::vector<EndpointInfo> endpoints() const;        // of others
+
+  Impl& impl() { return *impl_; }
+
+ private:
+  explicit Context(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+/// "goshawk_msgs::msg::dds_::Path_" to "goshawk_msgs/msg/Path", and back.
+std::string ros_type_name(std::string_view wire_name);
+std::string wire_type_name(std::string_view ros_name);
+
+}  // namespace goshawk::runtime

@@ -1,0 +1,132 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include "goshawk/runtime/clock.hpp"
+#include "goshawk/runtime/context.hpp"
+#include "goshawk/runtime/message_type.hpp"
+#include "goshawk/runtime/parameters.hpp"
+#include "goshawk/runtime/qos.hpp"
+#include "goshawk/runtime/ros_args.hpp"
+
+namespace spdlog {
+class logger;
+}
+
+namespace goshawk::runtime {
+
+/// Thrown while a component is constructed from what the user gave (parameters, a map file): the
+/// container prints the sentence and ends with status 2.
+class StartupFault : public std::runtime_error {
+ public:
+  explicit StartupFault(Error error)
+      : std::runtime_error(error.message), error_(std::move(error)) {}
+  const Error& error() const { return error_; }
+
+ private:
+  Error error_;
+};
+
+struct MessageInfo {
+  std::int64_t received_ns = 0;  // [ns] clock of the node, when its thread took the message
+};
+
+namespace detail {
+class Writer;
+}  // namespace detail
+
+/// Publishes in the caller's thread, synchronously (asynchronous costs milliseconds at p99).
+class RawPublisher {
+ public:
+  RawPublisher() = default;
+  explicit RawPublisher(std::shared_ptr<detail::Writer> writer) : writer_(std::move(writer)) {}
+  /// @return io_failed where the middleware did not take the message
+  Status publish_raw(const void* message) const;
+  /// Readers that claim to listen. No proof that they do (fastdds.md), good enough to wait for.
+  int matched() const;
+
+ private:
+  std::shared_ptr<detail::Writer> writer_;
+};
+
+template <typename Message>
+class Publisher : public RawPublisher {
+ public:
+  using RawPublisher::RawPublisher;
+  Status publish(const Message& message) const { return publish_raw(&message); }
+};
+
+/// A named member of the graph with one thread: every callback of the node runs in spin(), one
+/// after another, so a node's state needs no lock and a slow node delays no other.
+class Node {
+ public:
+  Node(Context& context, std::string name, RosArgs args = {},
+       std::shared_ptr<const Clock> clock = std::make_shared<SystemClock>());
+  ~Node();
+  Node(const Node&) = delete;
+  Node& operator=(const Node&) = delete;
+
+  const std::string& name() const { return name_; }
+  std::string full_name() const;
+  std::int64_t now_ns() const { return clock_->now_ns(); }
+  spdlog::logger& log() { return *log_; }
+
+  /// @throws StartupFault that lists every fault
+  template <typename Config>
+  Config parameters() const {
+    auto source = args_.parameters_of(name_);
+    if (!source) throw StartupFault(source.error());
+    auto config = read_parameters<Config>(*source, name_);
+    if (!config) throw StartupFault(config.error());
+    return *std::move(config);
+  }
+
+  template <typename Message>
+  Publisher<Message> advertise(std::string_view topic, Qos qos) {
+    return Publisher<Message>(make_writer(topic, message_type<Message>(), qos));
+  }
+
+  template <typename Message>
+  void subscribe(std::string_view topic, Qos qos,
+                 std::function<void(const Message&, const MessageInfo&)> callback) {
+    subscribe_raw(topic, message_type<Message>(), qos,
+                  [callback = std::move(callback)](const void* message, const MessageInfo& info) {
+                    callback(*static_cast<const Message*>(message), info);
+                  });
+  }
+
+  using RawCallback = std::function<void(const void* message, const MessageInfo& info)>;
+  RawPublisher advertise_raw(std::string_view topic, const MessageType& type, Qos qos) {
+    return RawPublisher(make_writer(topic, type, qos));
+  }
+  void subscribe_raw(std::string_view topic, const MessageType& type, Qos qos,
+                     RawCallback callback);
+
+  /// Calls back every period_s from now on; a call that comes late is not made up for.
+  void every(double period_s, std::function<void()> callback);
+
+  /// Serves callbacks until stop(). An exception in a callback is a bug: it is logged with the
+  /// topic's name, and ends the process, so that supervision restarts it.
+  void spin();
+  /// Serves what is there or comes within timeout_s, then returns.
+  void spin_some(double timeout_s);
+  /// From any thread.
+  void stop();
+
+ private:
+  std::shared_ptr<detail::Writer> make_writer(std::string_view topic, const MessageType& type,
+                                              Qos qos);
+  struct Impl;
+
+  std::string name_;
+  RosArgs args_;
+  std::shared_ptr<const Clock> clock_;
+  std::shared_ptr<spdlog::logger> log_;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace goshawk::runtime

@@ -1,0 +1,140 @@
+#pragma once
+
+#include <cmath>
+#include <map>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "goshawk/core/parameter.hpp"
+#include "goshawk/core/result.hpp"
+
+namespace goshawk::runtime {
+
+/// What the user set for one node: names to YAML scalars, in the order of precedence already
+/// resolved (files first to last, then `-p`).
+class ParameterSource {
+ public:
+  struct Entry {
+    std::string text;    // as written
+    std::string origin;  // file or option that set it, for the sentence of a fault
+    bool quoted = false; // a quoted YAML scalar is a string, even when it looks like a number
+  };
+
+  /// Adds the sections of a ROS style file that are meant for this node: `/**`, the node's name
+  /// and its full name (`/uav1/path_search`), each with a map `ros__parameters`.
+  /// @return io_failed where the file cannot be read, invalid_parameter where its form is wrong
+  Status add_file(const std::string& path, std::string_view node_name,
+                  std::string_view node_namespace);
+
+  void set(const std::string& name, Entry entry) { entries_[name] = std::move(entry); }
+  const std::map<std::string, Entry>& entries() const { return entries_; }
+
+ private:
+  std::map<std::string, Entry> entries_;
+};
+
+/// One parameter as documented: for `goshawk param describe` and docs/parameters.md.
+struct ParameterDescription {
+  std::string name;
+  std::string type;  // "bool", "int", "double", "string"
+  std::string unit;  // empty where it has none
+  std::string text;
+  std::string default_value;
+  std::string range;  // in words, empty where anything goes
+};
+
+/// @return the name among `known` that a user most likely meant, or empty
+std::string nearest_name(std::string_view wrong, const std::vector<std::string>& known);
+
+namespace detail {
+
+/// Reads one value, and says in a sentence what is wrong with it (empty: nothing).
+std::string parse(const ParameterSource::Entry& entry, bool& value);
+std::string parse(const ParameterSource::Entry& entry, int& value);
+std::string parse(const ParameterSource::Entry& entry, double& value);
+std::string parse(const ParameterSource::Entry& entry, std::string& value);
+
+std::string range_fault(double value, const Range& range);
+inline std::string range_fault(double value, const Anything&) {
+  return std::isfinite(value) ? "" : "is not finite";
+}
+std::string range_fault(const std::string& value, const OneOf& one_of);
+inline std::string range_fault(const std::string&, const Anything&) { return ""; }
+
+std::string to_text(bool value);
+std::string to_text(int value);
+std::string to_text(double value);
+std::string to_text(const std::string& value);
+std::string to_text(const Range& range);
+std::string to_text(const OneOf& one_of);
+inline std::string to_text(const Anything&) { return ""; }
+
+/// Collects every fault of a node's parameters before anything is said.
+class Reader {
+ public:
+  explicit Reader(const ParameterSource& source) : source_(source) {}
+
+  template <typename T, typename Allowed>
+  void operator()(const char* name, T& value, const char*, const char*, const Allowed& allowed) {
+    known_.emplace_back(name);
+    const auto entry = source_.entries().find(name);
+    if (entry == source_.entries().end()) return;
+    T parsed = value;
+    std::string fault = parse(entry->second, parsed);
+    if (fault.empty()) fault = range_fault(parsed, allowed);
+    if (fault.empty()) {
+      value = parsed;
+    } else {
+      add_fault(name, entry->second, fault);
+    }
+  }
+
+  /// Adds the unknown names. @return all faults in one sentence each, or success
+  Status finish(std::string_view node_name);
+
+ private:
+  void add_fault(const std::string& name, const ParameterSource::Entry& entry,
+                 const std::string& fault);
+
+  const ParameterSource& source_;
+  std::vector<std::string> known_;
+  std::vector<std::string> faults_;
+};
+
+template <typename T>
+constexpr const char* type_name() {
+  if constexpr (std::is_same_v<T, bool>) return "bool";
+  else if constexpr (std::is_same_v<T, int>) return "int";
+  else if constexpr (std::is_same_v<T, double>) return "double";
+  else return "string";
+}
+
+}  // namespace detail
+
+/// Fills a config struct, strictly: an unknown name, a wrong type or a value out of range is a
+/// fault, and the error (invalid_parameter) lists all of them, one a line.
+template <typename Config>
+Result<Config> read_parameters(const ParameterSource& source, std::string_view node_name) {
+  Config config;
+  detail::Reader reader(source);
+  describe(config, reader);
+  if (auto status = reader.finish(node_name); !status) return status.error();
+  return config;
+}
+
+template <typename Config>
+std::vector<ParameterDescription> describe_parameters() {
+  std::vector<ParameterDescription> list;
+  const Config defaults;
+  describe(defaults, [&](const char* name, const auto& value, const char* unit, const char* text,
+                         const auto& allowed) {
+    using T = std::remove_cvref_t<decltype(value)>;
+    list.push_back({name, detail::type_name<T>(), unit, text, detail::to_text(value),
+                    detail::to_text(allowed)});
+  });
+  return list;
+}
+
+}  // namespace goshawk::runtime

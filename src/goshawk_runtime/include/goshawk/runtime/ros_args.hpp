@@ -1,0 +1,47 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "goshawk/core/result.hpp"
+#include "goshawk/runtime/parameters.hpp"
+
+namespace goshawk::runtime {
+
+/// What stands behind `--ros-args`, as ROS 2 users know it:
+///   -r from:=to           remap a topic; __ns:=/uav1 the namespace, __node:=name the node
+///   -p name:=value        one parameter (`-p node:name:=value` for one node of several)
+///   --params-file FILE    parameters of one or many nodes
+///   --log-level LEVEL     trace, debug, info, warn, error, off
+struct RosArgs {
+  std::string node_namespace = "/";
+  std::string node_name;  // empty: the component's own name
+  std::string log_level = "info";
+  std::vector<std::pair<std::string, std::string>> remaps;
+  std::vector<std::string> params_files;
+
+  struct Override {
+    std::string node;  // empty: any node
+    std::string name;
+    std::string value;
+  };
+  std::vector<Override> overrides;
+
+  /// Takes the part from `--ros-args` on (up to `--` or the end) out of `arguments`.
+  /// @return invalid_input that names the argument which is wrong
+  static Result<RosArgs> extract(std::vector<std::string>& arguments);
+
+  /// @return the node's parameters from files and overrides, unchecked against a config struct
+  Result<ParameterSource> parameters_of(std::string_view name) const;
+
+  /// A topic's full name: remapped, then put under the namespace unless it begins with '/'.
+  std::string resolve_topic(std::string_view topic) const;
+};
+
+/// @return invalid_input unless the name is of letters, digits, '_' and '/', as ROS demands
+Status check_topic_name(std::string_view topic);
+
+}  // namespace goshawk::runtime

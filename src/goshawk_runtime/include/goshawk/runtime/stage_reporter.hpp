@@ -1,0 +1,46 @@
+#pragma once
+
+#include <initializer_list>
+#include <string>
+#include <utility>
+
+#include "goshawk/core/error.hpp"
+#include "goshawk/runtime/node.hpp"
+#include "goshawk_msgs.h"
+
+namespace goshawk::runtime {
+
+struct Timing {
+  std::int64_t wire_ns = 0;     // [ns] from the input's stamp to its arrival here
+  std::int64_t compute_ns = 0;  // [ns] in the core
+};
+
+/// How a stage answers on `stage_report`: once when it is ready, then for every request, with a
+/// result or with the reason why there is none. Silence is a fault.
+class StageReporter {
+ public:
+  using Counters = std::initializer_list<std::pair<const char*, double>>;
+
+  StageReporter(Node& node, std::string implementation);
+
+  void set_implementation(std::string implementation);
+  /// About the stage itself, request 0.
+  void ready(const std::string& message);
+  void fault(const Error& error);
+  /// About one request.
+  void answered(std::uint64_t request_id, Timing timing, Counters counters = {});
+  void failed(std::uint64_t request_id, const Error& error, Timing timing = {});
+
+ private:
+  void publish(std::uint64_t request_id, ErrorCode code, const std::string& message, Timing timing,
+               Counters counters);
+
+  Node& node_;
+  Publisher<goshawk_msgs::msg::StageReport> publisher_;
+  goshawk_msgs::msg::StageReport report_;
+};
+
+builtin_interfaces::msg::Time to_stamp(std::int64_t time_ns);
+std::int64_t to_ns(const builtin_interfaces::msg::Time& stamp);
+
+}  // namespace goshawk::runtime

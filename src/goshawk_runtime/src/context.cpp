@@ -1,0 +1,129 @@
+#include "goshawk/runtime/context.hpp"
+
+#include <unistd.h>
+
+#include <charconv>
+#include <cstdlib>
+#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastrtps/utils/IPLocator.h>
+
+#include "context_impl.hpp"
+
+namespace goshawk::runtime {
+namespace {
+
+// Unicast discovery knocks at the ports of this many participants of the domain: more processes
+// than any launch file here starts, few enough that the knocking costs nothing.
+constexpr unsigned kMaxParticipants = 60;
+constexpr unsigned kSocketBuffer = 4 << 20;  // [byte] asked for; the kernel may give less
+
+std::vector<std::string> split(const std::string& list) {
+  std::vector<std::string> parts;
+  for (std::size_t at = 0; at <= list.size();) {
+    const auto comma = std::min(list.find(',', at), list.size());
+    if (comma > at) parts.push_back(list.substr(at, comma - at));
+    at = comma + 1;
+  }
+  return parts;
+}
+
+void use_udp(dds::DomainParticipantQos& qos, const std::string& interfaces) {
+  auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
+  udp->maxInitialPeersRange = kMaxParticipants;
+  udp->sendBufferSize = kSocketBuffer;
+  udp->receiveBufferSize = kSocketBuffer;
+  qos.transport().use_builtin_transports = false;
+  qos.transport().user_transports.push_back(udp);
+  if (interfaces == "all") return;
+  const bool loopback = interfaces == "loopback";
+  udp->interfaceWhiteList = loopback ? std::vector<std::string>{"127.0.0.1"} : split(interfaces);
+  if (!loopback) return;
+  rtps::Locator_t peer;
+  peer.kind = LOCATOR_KIND_UDPv4;
+  rtps::IPLocator::setIPv4(peer, "127.0.0.1");
+  qos.wire_protocol().builtin.initialPeersList.push_back(peer);
+  // No multicast: neither announced to, nor listened on.
+  qos.wire_protocol().builtin.metatrafficUnicastLocatorList.push_back(peer);
+}
+
+dds::DomainParticipantQos participant_qos(const ContextOptions& options) {
+  auto* factory = dds::DomainParticipantFactory::get_instance();
+  factory->load_profiles();
+  dds::DomainParticipantQos qos = factory->get_default_participant_qos();
+  if (std::getenv("FASTRTPS_DEFAULT_PROFILES_FILE") == nullptr) use_udp(qos, options.interfaces);
+  // A killed process is forgotten after 3 s instead of 20, a restarted one met at once.
+  auto& discovery = qos.wire_protocol().builtin.discovery_config;
+  discovery.leaseDuration = {3, 0};
+  discovery.leaseDuration_announcementperiod = {0, 500'000'000};
+  discovery.initial_announcements.count = 5;
+  discovery.initial_announcements.period = {0, 50'000'000};
+  std::string user_data = "enclave=/;nodes=";
+  for (const auto& name : options.node_names) user_data += name + ",";
+  qos.user_data().data_vec().assign(user_data.begin(), user_data.end());
+  qos.name("goshawk_" + std::to_string(getpid()));
+  return qos;
+}
+
+}  // namespace
+
+Result<ContextOptions> ContextOptions::from_environment() {
+  ContextOptions options;
+  if (const char* interfaces = std::getenv("GOSHAWK_INTERFACES")) options.interfaces = interfaces;
+  if (const char* text = std::getenv("ROS_DOMAIN_ID"); text != nullptr && *text != '\0') {
+    const std::string_view view(text);
+    const auto [end, error] =
+        std::from_chars(view.data(), view.data() + view.size(), options.domain);
+    if (error != std::errc{} || end != view.data() + view.size() || options.domain < 0 ||
+        options.domain > 232) {
+      return fail(ErrorCode::invalid_parameter, "ROS_DOMAIN_ID is '" + std::string(text) +
+                                                    "': it must be a number from 0 to 232");
+    }
+  }
+  return options;
+}
+
+Result<std::unique_ptr<Context>> Context::create(const ContextOptions& options) {
+  auto impl = std::make_unique<Impl>();
+  impl->domain = options.domain;
+  auto* factory = dds::DomainParticipantFactory::get_instance();
+  impl->participant =
+      factory->create_participant(dds::DomainId_t(options.domain), participant_qos(options),
+                                  &impl->listener, dds::StatusMask::none());
+  if (impl->participant == nullptr) {
+    return fail(ErrorCode::io_failed,
+                "cannot join domain " + std::to_string(options.domain) + " on interfaces '" +
+                    options.interfaces + "': are its UDP ports (7400 + 250 x domain and up) taken, "
+                    "is the interface up, is the profile file right?");
+  }
+  impl->publisher = impl->participant->create_publisher(dds::PUBLISHER_QOS_DEFAULT);
+  impl->subscriber = impl->participant->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT);
+  return std::unique_ptr<Context>(new Context(std::move(impl)));
+}
+
+Context::Context(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Context::~Context() = default;
+int Context::domain() const { return impl_->domain; }
+std::vector<ParticipantInfo> Context::participants() const {
+  return impl_->listener.participants();
+}
+std::vector<EndpointInfo> Context::endpoints() const { return impl_->listener.endpoints(); }
+
+Context::Impl::~Impl() {
+  if (participant == nullptr) return;
+  participant->delete_contained_entities();
+  dds::DomainParticipantFactory::get_instance()->delete_participant(participant);
+}
+
+dds::Topic* Context::Impl::topic(const std::string& ros_name, const dds::TypeSupport& type) {
+  const std::lock_guard lock(topics_mutex_);
+  const std::string name = wire_topic_name(ros_name);
+  if (auto* found = participant->lookup_topicdescription(name)) {
+    if (found->get_type_name() != type.get_type_name()) return nullptr;
+    return static_cast<dds::Topic*>(found);
+  }
+  type.register_type(participant);
+  return participant->create_topic(name, type.get_type_name(), dds::TOPIC_QOS_DEFAULT);
+}
+
+}  // namespace goshawk::runtime

@@ -1,0 +1,243 @@
+#include "goshawk/runtime/node.hpp"
+
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <atomic>
+#include <chrono>
+#include <fastdds/dds/core/condition/GuardCondition.hpp>
+#include <fastdds/dds/core/condition/WaitSet.hpp>
+#include <fastdds/dds/publisher/DataWriter.hpp>
+#include <fastdds/dds/subscriber/DataReader.hpp>
+#include <fastdds/dds/subscriber/SampleInfo.hpp>
+#include <fastrtps/types/TypesBase.h>
+
+#include "context_impl.hpp"
+#include "message_type_impl.hpp"
+
+namespace goshawk::runtime {
+
+using Steady = std::chrono::steady_clock;
+using eprosima::fastrtps::types::ReturnCode_t;
+
+namespace detail {
+
+class Writer {
+ public:
+  Writer(dds::Publisher* publisher, dds::DataWriter* writer, std::string topic)
+      : publisher_(publisher), writer_(writer), topic_(std::move(topic)) {}
+  ~Writer() { publisher_->delete_datawriter(writer_); }
+  Writer(const Writer&) = delete;
+  Writer& operator=(const Writer&) = delete;
+
+  Status publish(const void* message) {
+    if (writer_->write(const_cast<void*>(message))) return success();
+    return fail(ErrorCode::io_failed,
+                "the middleware did not take a message on " + topic_ + ": is it too large, or does "
+                "a reliable reader hold the writer back?");
+  }
+
+  int matched() const {
+    dds::PublicationMatchedStatus status;
+    writer_->get_publication_matched_status(status);
+    return status.current_count;
+  }
+
+ private:
+  dds::Publisher* publisher_;
+  dds::DataWriter* writer_;
+  std::string topic_;
+};
+
+}  // namespace detail
+
+Status RawPublisher::publish_raw(const void* message) const { return writer_->publish(message); }
+int RawPublisher::matched() const { return writer_->matched(); }
+
+namespace {
+
+template <typename EndpointQos>
+void apply(const Qos& qos, EndpointQos& out) {
+  out.reliability().kind =
+      qos.reliable ? dds::RELIABLE_RELIABILITY_QOS : dds::BEST_EFFORT_RELIABILITY_QOS;
+  out.durability().kind =
+      qos.transient_local ? dds::TRANSIENT_LOCAL_DURABILITY_QOS : dds::VOLATILE_DURABILITY_QOS;
+  out.history().kind = dds::KEEP_LAST_HISTORY_QOS;
+  out.history().depth = qos.depth;
+  out.resource_limits().max_samples = 0;  // the depth alone limits
+  out.resource_limits().max_samples_per_instance = qos.depth;
+  // Buffers of the size that a message needs, reused: a latched map must not stay twice.
+  out.endpoint().history_memory_policy =
+      rtps::MemoryManagementPolicy_t::DYNAMIC_REUSABLE_MEMORY_MODE;
+}
+
+struct Subscription {
+  dds::DataReader* reader = nullptr;
+  std::string topic;
+  dds::TypeSupport type;
+  void* sample = nullptr;  // one object, used again for every message
+  Node::RawCallback callback;
+};
+
+struct Timer {
+  Steady::duration period;
+  Steady::time_point next;
+  std::function<void()> callback;
+};
+
+}  // namespace
+
+struct Node::Impl {
+  explicit Impl(Context& c) : context(c.impl()) { wait_set.attach_condition(stop); }
+
+  ~Impl() {
+    for (auto& s : subscriptions) {
+      wait_set.detach_condition(s->reader->get_statuscondition());
+      context.subscriber->delete_datareader(s->reader);
+      s->type.delete_data(s->sample);
+    }
+  }
+
+  Context::Impl& context;
+  dds::GuardCondition stop;
+  std::atomic<bool> stopping = false;
+  dds::WaitSet wait_set;
+  dds::ConditionSeq active;
+  std::vector<std::unique_ptr<Subscription>> subscriptions;
+  std::vector<Timer> timers;
+
+  void wait(Steady::time_point until);
+  void run_due_timers();
+  void take_all(const Node& node, Subscription& subscription);
+};
+
+void Node::Impl::wait(Steady::time_point until) {
+  for (const auto& timer : timers) until = std::min(until, timer.next);
+  const auto left = std::max(Steady::duration::zero(), until - Steady::now());
+  const auto ns = std::chrono::duration_cast<std::chrono::nanoseconds>(left).count();
+  wait_set.wait(active, eprosima::fastrtps::Duration_t(int(ns / 1'000'000'000), unsigned(ns % 1'000'000'000)));
+}
+
+void Node::Impl::run_due_timers() {
+  for (auto& timer : timers) {
+    const auto now = Steady::now();
+    if (now < timer.next) continue;
+    timer.next += timer.period;
+    if (timer.next < now) timer.next = now + timer.period;
+    timer.callback();
+  }
+}
+
+void Node::Impl::take_all(const Node& node, Subscription& s) {
+  dds::SampleInfo info;
+  for (;;) {
+    const auto code = s.reader->take_next_sample(s.sample, &info);
+    if (code == ReturnCode_t::RETCODE_NO_DATA) return;
+    if (code != ReturnCode_t::RETCODE_OK) {
+      node.log_->warn("a message on {} could not be decoded and was dropped: does its sender use "
+                      "the same IDL?", s.topic);
+      if (s.reader->get_unread_count() == 0) return;
+      continue;
+    }
+    if (!info.valid_data) continue;
+    s.callback(s.sample, {node.now_ns()});
+    if (stopping) return;
+  }
+}
+
+Node::Node(Context& context, std::string name, RosArgs args, std::shared_ptr<const Clock> clock)
+    : name_(std::move(name)),
+      args_(std::move(args)),
+      clock_(std::move(clock)),
+      log_(std::make_shared<spdlog::logger>(
+          name_, std::make_shared<spdlog::sinks::stderr_sink_mt>())),
+      impl_(std::make_unique<Impl>(context)) {
+  log_->set_pattern("%Y-%m-%d %H:%M:%S.%e [%n] %l: %v");
+  log_->set_level(spdlog::level::from_str(args_.log_level));
+  log_->flush_on(spdlog::level::info);
+}
+
+Node::~Node() = default;
+
+std::string Node::full_name() const {
+  return (args_.node_namespace == "/" ? "" : args_.node_namespace) + "/" + name_;
+}
+
+std::shared_ptr<detail::Writer> Node::make_writer(std::string_view topic, const MessageType& type,
+                                                  Qos qos) {
+  const std::string name = args_.resolve_topic(topic);
+  auto* dds_topic = impl_->context.topic(name, type.impl().support);
+  dds::DataWriterQos writer_qos;
+  auto* publisher = impl_->context.publisher;
+  // A profile named like the topic retunes it without compiling; ours else.
+  if (publisher->get_datawriter_qos_from_profile(name, writer_qos) != ReturnCode_t::RETCODE_OK) {
+    writer_qos = dds::DATAWRITER_QOS_DEFAULT;
+    apply(qos, writer_qos);
+    writer_qos.publish_mode().kind = dds::SYNCHRONOUS_PUBLISH_MODE;
+  }
+  auto* writer =
+      dds_topic == nullptr ? nullptr : publisher->create_datawriter(dds_topic, writer_qos);
+  if (writer == nullptr) {
+    throw StartupFault(fail(ErrorCode::io_failed,
+                            name_ + " cannot write " + name + " as " + type.name() +
+                                ": another type uses this topic here, or its profile is wrong"));
+  }
+  return std::make_shared<detail::Writer>(publisher, writer, name);
+}
+
+void Node::subscribe_raw(std::string_view topic, const MessageType& type, Qos qos,
+                         RawCallback callback) {
+  const std::string name = args_.resolve_topic(topic);
+  auto* dds_topic = impl_->context.topic(name, type.impl().support);
+  dds::DataReaderQos reader_qos;
+  auto* subscriber = impl_->context.subscriber;
+  if (subscriber->get_datareader_qos_from_profile(name, reader_qos) != ReturnCode_t::RETCODE_OK) {
+    reader_qos = dds::DATAREADER_QOS_DEFAULT;
+    apply(qos, reader_qos);
+  }
+  auto* reader =
+      dds_topic == nullptr ? nullptr : subscriber->create_datareader(dds_topic, reader_qos);
+  if (reader == nullptr) {
+    throw StartupFault(fail(ErrorCode::io_failed,
+                            name_ + " cannot read " + name + " as " + type.name() +
+                                ": another type uses this topic here, or its profile is wrong"));
+  }
+  auto subscription = std::make_unique<Subscription>();
+  subscription->reader = reader;
+  subscription->topic = name;
+  subscription->type = type.impl().support;
+  subscription->sample = subscription->type.create_data();
+  subscription->callback = std::move(callback);
+  auto& condition = reader->get_statuscondition();
+  condition.set_enabled_statuses(dds::StatusMask::data_available());
+  impl_->wait_set.attach_condition(condition);
+  impl_->subscriptions.push_back(std::move(subscription));
+}
+
+void Node::every(double period_s, std::function<void()> callback) {
+  const auto period = std::chrono::duration_cast<Steady::duration>(
+      std::chrono::duration<double>(period_s));
+  impl_->timers.push_back({period, Steady::now() + period, std::move(callback)});
+}
+
+void Node::spin() {
+  while (!impl_->stopping) spin_some(3600.0);
+}
+
+void Node::spin_some(double timeout_s) {
+  impl_->wait(Steady::now() + std::chrono::duration_cast<Steady::duration>(
+                                  std::chrono::duration<double>(timeout_s)));
+  if (impl_->stopping) return;
+  impl_->run_due_timers();
+  // By index: a callback may subscribe.
+  for (std::size_t i = 0; i < impl_->subscriptions.size() && !impl_->stopping; ++i) {
+    impl_->take_all(*this, *impl_->subscriptions[i]);
+  }
+}
+
+void Node::stop() {
+  impl_->stopping = true;
+  impl_->stop.set_trigger_value(true);
+}
+
+}  // namespace goshawk::runtime

@@ -1,0 +1,176 @@
+#include "goshawk/runtime/parameters.hpp"
+
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <charconv>
+#include <numeric>
+
+namespace goshawk::runtime {
+namespace {
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t above = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, diagonal + (a[i - 1] != b[j - 1])});
+      diagonal = above;
+    }
+  }
+  return row.back();
+}
+
+// yaml-cpp marks quoted scalars with the tag "!".
+Status add_section(const YAML::Node& section, const std::string& where, ParameterSource& source) {
+  const YAML::Node parameters = section.IsMap() ? section["ros__parameters"] : YAML::Node();
+  if (!parameters || !(parameters.IsMap() || parameters.IsNull())) {
+    return fail(ErrorCode::invalid_parameter,
+                where + " holds no map ros__parameters: write\n  NODE:\n    ros__parameters:\n"
+                        "      NAME: VALUE");
+  }
+  for (const auto& pair : parameters) {
+    const std::string name = pair.first.as<std::string>();
+    if (!pair.second.IsScalar()) {
+      return fail(ErrorCode::invalid_parameter,
+                  where + ": " + name + " is not a single value: lists and maps have no meaning "
+                                        "here");
+    }
+    source.set(name, {pair.second.Scalar(), where, pair.second.Tag() == "!"});
+  }
+  return success();
+}
+
+}  // namespace
+
+Status ParameterSource::add_file(const std::string& path, std::string_view node_name,
+                                 std::string_view node_namespace) {
+  std::string full(node_namespace);
+  if (!full.ends_with('/')) full += '/';
+  full += node_name;
+  try {
+    const YAML::Node file = YAML::LoadFile(path);
+    if (file.IsNull()) return success();
+    if (!file.IsMap()) {
+      return fail(ErrorCode::invalid_parameter, path + " is not a map of node names");
+    }
+    for (const std::string& key : {std::string("/**"), std::string(node_name), full}) {
+      if (!file[key]) continue;
+      if (auto status = add_section(file[key], path + ", " + key, *this); !status) return status;
+    }
+  } catch (const YAML::BadFile&) {
+    return fail(ErrorCode::io_failed, path + " cannot be read: does it exist?");
+  } catch (const YAML::Exception& e) {
+    return fail(ErrorCode::invalid_parameter, path + " is not valid YAML: " + e.what());
+  }
+  return success();
+}
+
+std::string nearest_name(std::string_view wrong, const std::vector<std::string>& known) {
+  std::string best;
+  std::size_t least = std::max<std::size_t>(3, wrong.size() / 2 + 1);
+  for (const auto& name : known) {
+    const std::size_t distance = edit_distance(wrong, name);
+    if (distance < least) {
+      least = distance;
+      best = name;
+    }
+  }
+  return best;
+}
+
+namespace detail {
+
+std::string parse(const ParameterSource::Entry& entry, bool& value) {
+  if (!entry.quoted && (entry.text == "true" || entry.text == "false")) {
+    value = entry.text == "true";
+    return "";
+  }
+  return "is not true or false";
+}
+
+template <typename Number>
+std::string parse_number(const ParameterSource::Entry& entry, Number& value, const char* what) {
+  const char* first = entry.text.data();
+  const char* last = first + entry.text.size();
+  if (first != last && *first == '+') ++first;
+  const auto [end, error] = std::from_chars(first, last, value);
+  if (entry.quoted || error != std::errc{} || end != last) return std::string("is not ") + what;
+  return "";
+}
+
+std::string parse(const ParameterSource::Entry& entry, int& value) {
+  return parse_number(entry, value, "a whole number");
+}
+
+std::string parse(const ParameterSource::Entry& entry, double& value) {
+  return parse_number(entry, value, "a number");
+}
+
+std::string parse(const ParameterSource::Entry& entry, std::string& value) {
+  value = entry.text;
+  return "";
+}
+
+std::string range_fault(double value, const Range& range) {
+  if (range.contains(value)) return "";
+  return "is out of range: it must be " + to_text(range);
+}
+
+std::string range_fault(const std::string& value, const OneOf& one_of) {
+  if (std::ranges::find(one_of.choices, value) != one_of.choices.end()) return "";
+  const std::string near = nearest_name(value, one_of.choices);
+  return "is not a choice: it must be " + to_text(one_of) +
+         (near.empty() ? "" : "; did you mean " + near + "?");
+}
+
+std::string to_text(bool value) { return value ? "true" : "false"; }
+std::string to_text(int value) { return std::to_string(value); }
+std::string to_text(double value) {
+  char text[32];
+  const auto [end, error] = std::to_chars(text, text + sizeof text, value);
+  return {text, end};
+}
+std::string to_text(const std::string& value) { return value; }
+
+std::string to_text(const Range& range) {
+  const bool upper = range.hi < 1e300;
+  if (range.lo == -std::numeric_limits<double>::infinity()) {
+    return upper ? "at most " + to_text(range.hi) : "finite";
+  }
+  std::string text = (range.above_lo ? "above " : "at least ") + to_text(range.lo);
+  if (upper) text += " and at most " + to_text(range.hi);
+  return text;
+}
+
+std::string to_text(const OneOf& one_of) {
+  std::string text;
+  for (const auto& choice : one_of.choices) text += (text.empty() ? "" : ", ") + choice;
+  return "one of " + text;
+}
+
+void Reader::add_fault(const std::string& name, const ParameterSource::Entry& entry,
+                       const std::string& fault) {
+  faults_.push_back(name + ": '" + entry.text + "' " + fault + " (" + entry.origin + ")");
+}
+
+Status Reader::finish(std::string_view node_name) {
+  for (const auto& [name, entry] : source_.entries()) {
+    if (std::ranges::find(known_, name) != known_.end()) continue;
+    const std::string near = nearest_name(name, known_);
+    faults_.push_back(name + ": no such parameter of " + std::string(node_name) +
+                      (near.empty() ? "" : "; did you mean " + near + "?") + " (" + entry.origin +
+                      ")");
+  }
+  if (faults_.empty()) return success();
+  std::string text = std::string(node_name) + " has " + std::to_string(faults_.size()) +
+                     (faults_.size() == 1 ? " parameter fault:" : " parameter faults:");
+  for (const auto& fault : faults_) text += "\n  " + fault;
+  return fail(ErrorCode::invalid_parameter, text);
+}
+
+}  // namespace detail
+}  // namespace goshawk::runtime

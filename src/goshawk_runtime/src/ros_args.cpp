@@ -1,0 +1,124 @@
+#include "goshawk/runtime/ros_args.hpp"
+
+#include <algorithm>
+#include <cctype>
+
+namespace goshawk::runtime {
+namespace {
+
+Result<std::pair<std::string, std::string>> split(const std::string& text, const char* what) {
+  const auto at = text.find(":=");
+  if (at == std::string::npos || at == 0 || at + 2 == text.size()) {
+    return fail(ErrorCode::invalid_input,
+                std::string(what) + " '" + text + "' is not of the form name:=value");
+  }
+  return std::pair{text.substr(0, at), text.substr(at + 2)};
+}
+
+Status add_remap(RosArgs& args, const std::string& text) {
+  auto rule = split(text, "remapping");
+  if (!rule) return rule.error();
+  auto& [from, to] = *rule;
+  if (from == "__ns") {
+    args.node_namespace = to.starts_with('/') ? to : "/" + to;
+    return check_topic_name(args.node_namespace);
+  }
+  if (from == "__node" || from == "__name") {
+    args.node_name = to;
+    return success();
+  }
+  for (const auto& name : {from, to}) {
+    if (auto status = check_topic_name(name); !status) return status;
+  }
+  args.remaps.emplace_back(from, to);
+  return success();
+}
+
+Status add_override(RosArgs& args, const std::string& text) {
+  auto rule = split(text, "parameter");
+  if (!rule) return rule.error();
+  auto& [name, value] = *rule;
+  const auto colon = name.find(':');
+  if (colon == std::string::npos) {
+    args.overrides.push_back({"", name, value});
+  } else {
+    args.overrides.push_back({name.substr(0, colon), name.substr(colon + 1), value});
+  }
+  return success();
+}
+
+Status take_option(RosArgs& args, const std::string& option, const std::string& value) {
+  if (option == "-r" || option == "--remap") return add_remap(args, value);
+  if (option == "-p" || option == "--param") return add_override(args, value);
+  if (option == "--params-file") {
+    args.params_files.push_back(value);
+    return success();
+  }
+  if (option == "--log-level") {
+    static constexpr const char* kLevels[] = {"trace", "debug", "info", "warn", "error", "off"};
+    if (std::ranges::find(kLevels, value) == std::end(kLevels)) {
+      return fail(ErrorCode::invalid_input, "log level '" + value +
+                                                "' is not trace, debug, info, warn, error or off");
+    }
+    args.log_level = value;
+    return success();
+  }
+  return fail(ErrorCode::invalid_input,
+              "'" + option + "' is no option of --ros-args: use -r, -p, --params-file, --log-level");
+}
+
+}  // namespace
+
+Result<RosArgs> RosArgs::extract(std::vector<std::string>& arguments) {
+  RosArgs args;
+  const auto begin = std::ranges::find(arguments, "--ros-args");
+  auto it = begin;
+  if (it != arguments.end()) ++it;
+  for (; it != arguments.end() && *it != "--"; ++it) {
+    const std::string option = *it;
+    if (++it == arguments.end()) {
+      return fail(ErrorCode::invalid_input, "'" + option + "' wants a value behind it");
+    }
+    if (auto status = take_option(args, option, *it); !status) return status.error();
+  }
+  if (it != arguments.end()) ++it;
+  arguments.erase(begin, it);
+  return args;
+}
+
+Result<ParameterSource> RosArgs::parameters_of(std::string_view name) const {
+  ParameterSource source;
+  for (const auto& file : params_files) {
+    if (auto status = source.add_file(file, name, node_namespace); !status) return status.error();
+  }
+  for (const auto& o : overrides) {
+    if (o.node.empty() || o.node == name) source.set(o.name, {o.value, "-p", false});
+  }
+  return source;
+}
+
+std::string RosArgs::resolve_topic(std::string_view topic) const {
+  const auto absolute = [&](std::string_view name) {
+    if (name.starts_with('/')) return std::string(name);
+    return (node_namespace == "/" ? "" : node_namespace) + "/" + std::string(name);
+  };
+  for (const auto& [from, to] : remaps) {
+    if (from == topic || absolute(from) == absolute(topic)) return absolute(to);
+  }
+  return absolute(topic);
+}
+
+Status check_topic_name(std::string_view topic) {
+  const bool allowed = !topic.empty() && std::ranges::all_of(topic, [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '_' || c == '/';
+  });
+  if (allowed && topic.find("//") == std::string_view::npos &&
+      (topic == "/" || !topic.ends_with('/'))) {
+    return success();
+  }
+  return fail(ErrorCode::invalid_input, "'" + std::string(topic) +
+                                            "' is not a name: use letters, digits and '_', parts "
+                                            "parted by single '/'");
+}
+
+}  // namespace goshawk::runtime

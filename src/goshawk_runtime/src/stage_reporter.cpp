@@ -1,0 +1,76 @@
+#include "goshawk/runtime/stage_reporter.hpp"
+
+#include <spdlog/logger.h>
+
+namespace goshawk::runtime {
+
+StageReporter::StageReporter(Node& node, std::string implementation)
+    : node_(node),
+      // Latched and deep, so that whoever comes late still learns which stages are ready.
+      publisher_(node.advertise<goshawk_msgs::msg::StageReport>("stage_report", Qos::latched(20))) {
+  report_.stage(node.name());
+  report_.implementation(std::move(implementation));
+}
+
+void StageReporter::set_implementation(std::string implementation) {
+  report_.implementation(std::move(implementation));
+}
+
+void StageReporter::ready(const std::string& message) {
+  node_.log().info("ready: {}", message);
+  publish(0, ErrorCode::ok, "ready: " + message, {}, {});
+}
+
+void StageReporter::fault(const Error& error) {
+  node_.log().warn("{}: {}", to_string(error.code), error.message);
+  publish(0, error.code, error.message, {}, {});
+}
+
+void StageReporter::answered(std::uint64_t request_id, Timing timing, Counters counters) {
+  node_.log().debug("request {}: ok, {} us", request_id, timing.compute_ns / 1000);
+  publish(request_id, ErrorCode::ok, "", timing, counters);
+}
+
+void StageReporter::failed(std::uint64_t request_id, const Error& error, Timing timing) {
+  node_.log().warn("request {}: {}: {}", request_id, to_string(error.code), error.message);
+  publish(request_id, error.code, error.message, timing, {});
+}
+
+void StageReporter::publish(std::uint64_t request_id, ErrorCode code, const std::string& message,
+                            Timing timing, Counters counters) {
+  report_.header().stamp(to_stamp(node_.now_ns()));
+  report_.request_id(request_id);
+  report_.code(std::string(to_string(code)));
+  report_.message(message);
+  report_.wire_ns(timing.wire_ns);
+  report_.compute_ns(timing.compute_ns);
+  report_.counters().clear();
+  for (const auto& [name, value] : counters) {
+    goshawk_msgs::msg::Counter counter;
+    counter.name(name);
+    counter.value(value);
+    report_.counters().push_back(std::move(counter));
+  }
+  if (auto status = publisher_.publish(report_); !status) {
+    node_.log().error("{}", status.error().message);
+  }
+}
+
+builtin_interfaces::msg::Time to_stamp(std::int64_t time_ns) {
+  builtin_interfaces::msg::Time stamp;
+  std::int64_t sec = time_ns / 1'000'000'000;
+  std::int64_t rest = time_ns % 1'000'000'000;
+  if (rest < 0) {
+    rest += 1'000'000'000;
+    --sec;
+  }
+  stamp.sec(std::int32_t(sec));
+  stamp.nanosec(std::uint32_t(rest));
+  return stamp;
+}
+
+std::int64_t to_ns(const builtin_interfaces::msg::Time& stamp) {
+  return std::int64_t{stamp.sec()} * 1'000'000'000 + stamp.nanosec();
+}
+
+}  // namespace goshawk::runtime
