@@ -2,6 +2,8 @@
 
 #include <spdlog/logger.h>
 
+#include "goshawk/conversions/geometry.hpp"
+
 namespace goshawk::runtime {
 
 StageReporter::StageReporter(Node& node, std::string implementation)
@@ -38,7 +40,7 @@ void StageReporter::failed(std::uint64_t request_id, const Error& error, Timing 
 
 void StageReporter::publish(std::uint64_t request_id, ErrorCode code, const std::string& message,
                             Timing timing, Counters counters) {
-  report_.header().stamp(to_stamp(node_.now_ns()));
+  report_.header().stamp(conversions::to_stamp(node_.now_ns()));
   report_.request_id(request_id);
   report_.code(std::string(to_string(code)));
   report_.message(message);
@@ -54,23 +56,6 @@ void StageReporter::publish(std::uint64_t request_id, ErrorCode code, const std:
   if (auto status = publisher_.publish(report_); !status) {
     node_.log().error("{}", status.error().message);
   }
-}
-
-builtin_interfaces::msg::Time to_stamp(std::int64_t time_ns) {
-  builtin_interfaces::msg::Time stamp;
-  std::int64_t sec = time_ns / 1'000'000'000;
-  std::int64_t rest = time_ns % 1'000'000'000;
-  if (rest < 0) {
-    rest += 1'000'000'000;
-    --sec;
-  }
-  stamp.sec(std::int32_t(sec));
-  stamp.nanosec(std::uint32_t(rest));
-  return stamp;
-}
-
-std::int64_t to_ns(const builtin_interfaces::msg::Time& stamp) {
-  return std::int64_t{stamp.sec()} * 1'000'000'000 + stamp.nanosec();
 }
 
 }  // namespace goshawk::runtime

@@ -40,7 +40,4 @@ class StageReporter {
   goshawk_msgs::msg::StageReport report_;
 };
 
-builtin_interfaces::msg::Time to_stamp(std::int64_t time_ns);
-std::int64_t to_ns(const builtin_interfaces::msg::Time& stamp);
-
 }  // namespace goshawk::runtime

@@ -1,0 +1,165 @@
+#include "goshawk/conversions/geometry.hpp"
+
+namespace goshawk::conversions {
+
+builtin_interfaces::msg::Time to_stamp(std::int64_t time_ns) {
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  builtin_interfaces::msg::Time stamp;
+  const std::int64_t rest = ((time_ns % kSecond) + kSecond) % kSecond;
+  stamp.sec(std::int32_t((time_ns - rest) / kSecond));
+  stamp.nanosec(std::uint32_t(rest));
+  return stamp;
+}
+
+std::int64_t to_ns(const builtin_interfaces::msg::Time& stamp) {
+  return std::int64_t{stamp.sec()} * 1'000'000'000 + stamp.nanosec();
+}
+
+std_msgs::msg::Header make_header(std::int64_t stamp_ns, std::string_view frame) {
+  std_msgs::msg::Header header;
+  header.stamp(to_stamp(stamp_ns));
+  header.frame_id(std::string(frame));
+  return header;
+}
+
+Status check_frame(const std_msgs::msg::Header& header, std::string_view frame,
+                   std::string_view what) {
+  if (header.frame_id() == frame) return success();
+  return fail(ErrorCode::wrong_frame, std::string(what) + " is in frame '" + header.frame_id() +
+                                          "', but must be in '" + std::string(frame) +
+                                          "': transform it before it is sent");
+}
+
+Vec3 from_msg(const geometry_msgs::msg::Point& m) { return {m.x(), m.y(), m.z()}; }
+Vec3 from_msg(const geometry_msgs::msg::Vector3& m) { return {m.x(), m.y(), m.z()}; }
+
+geometry_msgs::msg::Point to_point(const Vec3& v) {
+  geometry_msgs::msg::Point m;
+  m.x(v.x());
+  m.y(v.y());
+  m.z(v.z());
+  return m;
+}
+
+geometry_msgs::msg::Vector3 to_vector(const Vec3& v) {
+  geometry_msgs::msg::Vector3 m;
+  m.x(v.x());
+  m.y(v.y());
+  m.z(v.z());
+  return m;
+}
+
+std::vector<Vec3> from_msg(const std::vector<geometry_msgs::msg::Point>& points) {
+  std::vector<Vec3> out;
+  out.reserve(points.size());
+  for (const auto& p : points) out.push_back(from_msg(p));
+  return out;
+}
+
+std::vector<geometry_msgs::msg::Point> to_points(const std::vector<Vec3>& points) {
+  std::vector<geometry_msgs::msg::Point> out;
+  out.reserve(points.size());
+  for (const auto& p : points) out.push_back(to_point(p));
+  return out;
+}
+
+FlatState from_msg(const goshawk_msgs::msg::FlatState& m) {
+  return {from_msg(m.position()), from_msg(m.velocity()), from_msg(m.acceleration()),
+          Vec3::Zero()};
+}
+
+goshawk_msgs::msg::FlatState to_msg(const FlatState& s) {
+  goshawk_msgs::msg::FlatState m;
+  m.position(to_point(s.position));
+  m.velocity(to_vector(s.velocity));
+  m.acceleration(to_vector(s.acceleration));
+  return m;
+}
+
+Result<Polytope> from_msg(const goshawk_msgs::msg::Polytope& m) {
+  const std::size_t faces = m.offsets().size();
+  if (m.normals().size() != 3 * faces) {
+    return fail(ErrorCode::invalid_input,
+                "a polytope has " + std::to_string(m.normals().size()) + " normal components and " +
+                    std::to_string(faces) + " offsets: three components an offset are needed");
+  }
+  Polytope p;
+  p.A = Eigen::Map<const Polytope::Normals>(m.normals().data(), Eigen::Index(faces), 3);
+  p.b = Eigen::Map<const Eigen::VectorXd>(m.offsets().data(), Eigen::Index(faces));
+  if (auto status = p.check(); !status) return status.error();
+  return p;
+}
+
+goshawk_msgs::msg::Polytope to_msg(const Polytope& p) {
+  goshawk_msgs::msg::Polytope m;
+  m.normals().assign(p.A.data(), p.A.data() + p.A.size());
+  m.offsets().assign(p.b.data(), p.b.data() + p.b.size());
+  return m;
+}
+
+Result<std::vector<Polytope>> from_msg(const std::vector<goshawk_msgs::msg::Polytope>& m) {
+  std::vector<Polytope> polytopes;
+  polytopes.reserve(m.size());
+  for (const auto& item : m) {
+    auto polytope = from_msg(item);
+    if (!polytope) return polytope.error();
+    polytopes.push_back(*std::move(polytope));
+  }
+  return polytopes;
+}
+
+std::vector<goshawk_msgs::msg::Polytope> to_msg(const std::vector<Polytope>& polytopes) {
+  std::vector<goshawk_msgs::msg::Polytope> m;
+  m.reserve(polytopes.size());
+  for (const auto& polytope : polytopes) m.push_back(to_msg(polytope));
+  return m;
+}
+
+Result<Trajectory> from_msg(const std::vector<goshawk_msgs::msg::BezierPiece>& m,
+                            std::size_t polytopes) {
+  Trajectory t;
+  t.pieces.reserve(m.size());
+  for (const auto& item : m) {
+    if (item.polytope() >= polytopes) {
+      return fail(ErrorCode::invalid_input,
+                  "piece " + std::to_string(t.pieces.size()) + " names polytope " +
+                      std::to_string(item.polytope()) + " of " + std::to_string(polytopes));
+    }
+    BezierPiece piece;
+    piece.duration_s = item.duration();
+    piece.polytope = int(item.polytope());
+    for (int j = 0; j < 6; ++j) {
+      piece.control_points.col(j) = from_msg(item.control_points()[std::size_t(j)]);
+    }
+    t.pieces.push_back(piece);
+  }
+  if (auto status = t.check(); !status) return status.error();
+  return t;
+}
+
+std::vector<goshawk_msgs::msg::BezierPiece> to_msg(const Trajectory& t) {
+  std::vector<goshawk_msgs::msg::BezierPiece> m(t.pieces.size());
+  for (std::size_t k = 0; k < m.size(); ++k) {
+    m[k].duration(t.pieces[k].duration_s);
+    m[k].polytope(std::uint32_t(t.pieces[k].polytope));
+    for (int j = 0; j < 6; ++j) {
+      m[k].control_points()[std::size_t(j)] = to_point(t.pieces[k].control_points.col(j));
+    }
+  }
+  return m;
+}
+
+goshawk_msgs::msg::Certificate to_msg(const Certificate& c) {
+  goshawk_msgs::msg::Certificate m;
+  m.position(c.position_m);
+  m.velocity(c.velocity_m_s);
+  m.acceleration(c.acceleration_m_s2);
+  m.joint_position(c.joint_position_m);
+  m.joint_velocity(c.joint_velocity_m_s);
+  m.joint_acceleration(c.joint_acceleration_m_s2);
+  m.start(c.start_m);
+  m.goal(c.goal_m);
+  return m;
+}
+
+}  // namespace goshawk::conversions
