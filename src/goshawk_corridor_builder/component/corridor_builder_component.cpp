@@ -1,0 +1,97 @@
+#include "goshawk/corridor_builder/config.hpp"
+#include "goshawk/corridor_builder/corridor_builder.hpp"
+#include "goshawk/runtime/component.hpp"
+#include "goshawk/runtime/map_subscription.hpp"
+#include "goshawk/runtime/stage.hpp"
+
+namespace goshawk::corridor_builder {
+namespace {
+
+using namespace goshawk::runtime;
+namespace msg = goshawk_msgs::msg;
+
+CorridorBuilder make_builder(const Config& config) {
+  auto builder = CorridorBuilder::create(config);
+  if (!builder) throw StartupFault(builder.error());
+  return *std::move(builder);
+}
+
+/// path -> corridor
+class CorridorBuilderComponent : public Component {
+ public:
+  explicit CorridorBuilderComponent(Node& node)
+      : node_(node),
+        builder_(make_builder(node.parameters<Config>())),
+        reporter_(node, std::string(builder_.implementation())),
+        publisher_(node.advertise<msg::Corridor>("corridor", Qos::reliable_last())),
+        map_(node, reporter_) {
+    node.subscribe<msg::Path>(
+        "path", Qos::reliable_last(),
+        [this](const msg::Path& m, const MessageInfo& info) { on_path(m, info); });
+    reporter_.ready("builds corridors with " + std::string(builder_.implementation()));
+  }
+
+ private:
+  void on_path(const msg::Path& m, const MessageInfo& info) {
+    Timing timing{.wire_ns = wire_time_ns(m.header(), info)};
+    const auto request = open_request(m.request(), node_.now_ns(), reporter_, timing);
+    if (!request) return;
+    if (auto status = check_map(m); !status) {
+      return reporter_.failed(request->id, status.error(), timing);
+    }
+    const auto waypoints = conversions::waypoints_of(m);
+    if (!waypoints) return reporter_.failed(request->id, waypoints.error(), timing);
+    auto [corridor, compute_ns] = timed([&] { return builder_.build(*map_.grid(), *waypoints); });
+    timing.compute_ns = compute_ns;
+    if (!corridor) return reporter_.failed(request->id, corridor.error(), timing);
+    publish(m.request(), *corridor, compute_ns);
+    report(request->id, *corridor, timing);
+  }
+
+  Status check_map(const msg::Path& m) const {
+    if (map_.grid() == nullptr) {
+      return fail(ErrorCode::no_map,
+                  "no map has come yet on map/voxels: is the map server running?");
+    }
+    if (map_.grid()->version >= m.map_version()) return success();
+    return fail(ErrorCode::no_map, "the path was searched in map version " +
+                                       std::to_string(m.map_version()) + ", but version " +
+                                       std::to_string(map_.grid()->version) +
+                                       " is the newest here: ask again");
+  }
+
+  void publish(const msg::PlanRequest& request, const Corridor& corridor,
+               std::int64_t compute_ns) {
+    msg::Corridor m;
+    m.request(request);
+    m.implementation(std::string(builder_.implementation()));
+    m.map_version(map_.grid()->version);
+    m.waypoints(conversions::to_points(corridor.waypoints_map));
+    m.polytopes(conversions::to_msg(corridor.polytopes));
+    m.min_overlap_radius(corridor.min_overlap_radius_m());
+    m.compute_ns(compute_ns);
+    m.header(conversions::make_header(node_.now_ns()));
+    if (auto status = publisher_.publish(m); !status) reporter_.failed(request.id(), status.error());
+  }
+
+  void report(std::uint64_t id, const Corridor& corridor, const Timing& timing) {
+    double faces = 0;
+    for (const auto& polytope : corridor.polytopes) faces += polytope.faces();
+    reporter_.answered(id, timing,
+                       {{"polytopes", double(corridor.polytopes.size())},
+                        {"faces", faces},
+                        {"min_overlap_radius_m", corridor.min_overlap_radius_m()}});
+  }
+
+  Node& node_;
+  CorridorBuilder builder_;
+  StageReporter reporter_;
+  Publisher<msg::Corridor> publisher_;
+  MapSubscription map_;
+};
+
+}  // namespace
+}  // namespace goshawk::corridor_builder
+
+GOSHAWK_REGISTER_COMPONENT(goshawk::corridor_builder::CorridorBuilderComponent,
+                           goshawk::corridor_builder::Config)

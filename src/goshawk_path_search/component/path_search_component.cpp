@@ -1,0 +1,81 @@
+#include "goshawk/path_search/config.hpp"
+#include "goshawk/path_search/path_search.hpp"
+#include "goshawk/runtime/component.hpp"
+#include "goshawk/runtime/map_subscription.hpp"
+#include "goshawk/runtime/stage.hpp"
+
+namespace goshawk::path_search {
+namespace {
+
+using namespace goshawk::runtime;
+namespace msg = goshawk_msgs::msg;
+
+PathSearch make_search(const Config& config) {
+  auto search = PathSearch::create(config);
+  if (!search) throw StartupFault(search.error());
+  return *std::move(search);
+}
+
+/// plan_request -> path
+class PathSearchComponent : public Component {
+ public:
+  explicit PathSearchComponent(Node& node)
+      : node_(node),
+        config_(node.parameters<Config>()),
+        search_(make_search(config_)),
+        reporter_(node, config_.planner),
+        publisher_(node.advertise<msg::Path>("path", Qos::reliable_last())),
+        map_(node, reporter_, [this](const auto& grid) { search_.set_map(grid); }) {
+    node.subscribe<msg::PlanRequest>(
+        "plan_request", Qos::reliable_last(),
+        [this](const msg::PlanRequest& m, const MessageInfo& info) { on_request(m, info); });
+    reporter_.ready("searches with " + config_.planner + ", " + config_.corner_rule);
+  }
+
+ private:
+  void on_request(const msg::PlanRequest& m, const MessageInfo& info) {
+    Timing timing{.wire_ns = wire_time_ns(m.header(), info)};
+    const auto request = open_request(m, node_.now_ns(), reporter_, timing);
+    if (!request) return;
+    auto [path, compute_ns] =
+        timed([&] { return search_.plan(request->start.position, request->goal.position); });
+    timing.compute_ns = compute_ns;
+    if (!path) return reporter_.failed(request->id, path.error(), timing);
+    publish(m, *path, compute_ns);
+    reporter_.answered(request->id, timing,
+                       {{"expanded", double(path->counters.expanded)},
+                        {"generated", double(path->counters.generated)},
+                        {"raw_length_m", path->raw_length_m},
+                        {"pruned_length_m", path->pruned_length_m},
+                        {"waypoints_raw", double(path->raw_map.size())},
+                        {"waypoints", double(path->waypoints_map.size())}});
+  }
+
+  void publish(const msg::PlanRequest& request, const PlannedPath& path, std::int64_t compute_ns) {
+    msg::Path m;
+    m.request(request);
+    m.implementation(path.implementation);
+    m.map_version(map_.grid()->version);
+    m.raw(conversions::to_points(path.raw_map));
+    m.waypoints(conversions::to_points(path.waypoints_map));
+    m.raw_length(path.raw_length_m);
+    m.length(path.pruned_length_m);
+    m.cost(path.cost);
+    m.expanded(std::uint64_t(path.counters.expanded));
+    m.compute_ns(compute_ns);
+    m.header(conversions::make_header(node_.now_ns()));
+    if (auto status = publisher_.publish(m); !status) reporter_.failed(request.id(), status.error());
+  }
+
+  Node& node_;
+  Config config_;
+  PathSearch search_;
+  StageReporter reporter_;
+  Publisher<msg::Path> publisher_;
+  MapSubscription map_;
+};
+
+}  // namespace
+}  // namespace goshawk::path_search
+
+GOSHAWK_REGISTER_COMPONENT(goshawk::path_search::PathSearchComponent, goshawk::path_search::Config)

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <utility>
+
+#include "goshawk/conversions/plan.hpp"
+#include "goshawk/runtime/stage_reporter.hpp"
+
+namespace goshawk::runtime {
+
+/// Time that `work` takes, beside its result. @return {result, [ns]}
+template <typename Work>
+auto timed(Work&& work) {
+  const auto begin = std::chrono::steady_clock::now();
+  auto result = std::forward<Work>(work)();
+  const auto end = std::chrono::steady_clock::now();
+  return std::pair{std::move(result), std::int64_t{(end - begin).count()}};
+}
+
+/// @return [ns] how long a message travelled: from its stamp to its arrival, same clock
+inline std::int64_t wire_time_ns(const std_msgs::msg::Header& header, const MessageInfo& info) {
+  return info.received_ns - conversions::to_ns(header.stamp());
+}
+
+/// The request that a message carries, if it is valid and still worth an answer; else the failure
+/// has been reported already, and nothing is returned.
+inline std::optional<conversions::PlanRequest> open_request(
+    const goshawk_msgs::msg::PlanRequest& m, std::int64_t now_ns, StageReporter& reporter,
+    Timing timing) {
+  auto request = conversions::from_msg(m);
+  Status status = request ? conversions::check_deadline(*request, now_ns) : request.error();
+  if (status) return *std::move(request);
+  reporter.failed(m.id(), status.error(), timing);
+  return {};
+}
+
+}  // namespace goshawk::runtime

@@ -1,0 +1,78 @@
+#include "goshawk/runtime/component.hpp"
+#include "goshawk/runtime/stage.hpp"
+#include "goshawk/trajectory_optimizer/config.hpp"
+#include "goshawk/trajectory_optimizer/trajectory_optimizer.hpp"
+
+namespace goshawk::trajectory_optimizer {
+namespace {
+
+using namespace goshawk::runtime;
+namespace msg = goshawk_msgs::msg;
+
+TrajectoryOptimizer make_optimizer(const Config& config) {
+  auto optimizer = TrajectoryOptimizer::create(config);
+  if (!optimizer) throw StartupFault(optimizer.error());
+  return *std::move(optimizer);
+}
+
+/// corridor -> trajectory
+class TrajectoryOptimizerComponent : public Component {
+ public:
+  explicit TrajectoryOptimizerComponent(Node& node)
+      : node_(node),
+        optimizer_(make_optimizer(node.parameters<Config>())),
+        reporter_(node, std::string(optimizer_.implementation())),
+        publisher_(node.advertise<msg::BezierTrajectory>("trajectory", Qos::reliable_last())) {
+    node.subscribe<msg::Corridor>(
+        "corridor", Qos::reliable_last(),
+        [this](const msg::Corridor& m, const MessageInfo& info) { on_corridor(m, info); });
+    reporter_.ready("optimises with " + std::string(optimizer_.implementation()));
+  }
+
+ private:
+  void on_corridor(const msg::Corridor& m, const MessageInfo& info) {
+    Timing timing{.wire_ns = wire_time_ns(m.header(), info)};
+    const auto request = open_request(m.request(), node_.now_ns(), reporter_, timing);
+    if (!request) return;
+    auto [solution, compute_ns] = timed([&]() -> Result<Solution> {
+      const auto corridor = conversions::from_msg(m);
+      if (!corridor) return corridor.error();
+      return optimizer_.optimise(*corridor, request->start, request->goal, request->limits);
+    });
+    timing.compute_ns = compute_ns;
+    if (!solution) return reporter_.failed(request->id, solution.error(), timing);
+    publish(m, *solution, compute_ns);
+    reporter_.answered(request->id, timing,
+                       {{"pieces", double(solution->trajectory.pieces.size())},
+                        {"iterations", double(solution->iterations)},
+                        {"duration_s", solution->trajectory.duration_s()},
+                        {"length_m", solution->trajectory.length_m()},
+                        {"jerk_cost", solution->jerk_cost}});
+  }
+
+  void publish(const msg::Corridor& corridor, const Solution& solution, std::int64_t compute_ns) {
+    msg::BezierTrajectory m;
+    m.request(corridor.request());
+    m.implementation(std::string(optimizer_.implementation()));
+    m.map_version(corridor.map_version());
+    m.pieces(conversions::to_msg(solution.trajectory));
+    m.polytopes(corridor.polytopes());
+    m.certificate(conversions::to_msg(solution.certificate));
+    m.compute_ns(compute_ns);
+    m.header(conversions::make_header(node_.now_ns()));
+    if (auto status = publisher_.publish(m); !status) {
+      reporter_.failed(corridor.request().id(), status.error());
+    }
+  }
+
+  Node& node_;
+  TrajectoryOptimizer optimizer_;
+  StageReporter reporter_;
+  Publisher<msg::BezierTrajectory> publisher_;
+};
+
+}  // namespace
+}  // namespace goshawk::trajectory_optimizer
+
+GOSHAWK_REGISTER_COMPONENT(goshawk::trajectory_optimizer::TrajectoryOptimizerComponent,
+                           goshawk::trajectory_optimizer::Config)
