@@ -1,0 +1,78 @@
+#pragma once
+
+#include <concepts>
+#include <type_traits>
+
+#include "goshawk/core/parameter.hpp"
+#include "goshawk/simulator/attitude_controller.hpp"
+#include "goshawk/simulator/vehicle_parameters.hpp"
+
+namespace goshawk::simulator {
+
+struct Config {
+  VehicleParameters vehicle;
+  AttitudeGains attitude;
+  double command_timeout_s = 0.1;
+  double failsafe_tilt_rad = 0.87;
+  double wind_x_m_s = 0.0;
+  double wind_y_m_s = 0.0;
+  double wind_z_m_s = 0.0;
+  double gust_deviation_m_s = 0.0;
+  double gust_time_s = 1.0;
+  int gust_seed = 1;
+};
+
+template <typename Self, typename Visitor>
+  requires std::same_as<std::remove_const_t<Self>, Config>
+void describe(Self& c, Visitor&& visit) {
+  const auto positive = Range::positive();
+  const Range any_drag{0.0, 100.0};
+  const Range wind{-30.0, 30.0};
+  auto& v = c.vehicle;
+  auto& a = c.attitude;
+  visit("mass_kg", v.mass_kg, "kg", "mass of the vehicle", positive);
+  visit("inertia_xx_kg_m2", v.inertia_xx_kg_m2, "kg m^2", "moment of inertia about x", positive);
+  visit("inertia_yy_kg_m2", v.inertia_yy_kg_m2, "kg m^2", "moment of inertia about y", positive);
+  visit("inertia_zz_kg_m2", v.inertia_zz_kg_m2, "kg m^2", "moment of inertia about z", positive);
+  visit("inertia_xy_kg_m2", v.inertia_xy_kg_m2, "kg m^2", "entry xy of the inertia", Anything{});
+  visit("inertia_xz_kg_m2", v.inertia_xz_kg_m2, "kg m^2", "entry xz of the inertia", Anything{});
+  visit("inertia_yz_kg_m2", v.inertia_yz_kg_m2, "kg m^2", "entry yz of the inertia", Anything{});
+  visit("arm_length_m", v.arm_length_m, "m", "centre of mass to each rotor's axis", positive);
+  visit("max_motor_thrust_n", v.max_motor_thrust_n, "N", "full thrust of one motor", positive);
+  visit("thrust_coefficient_n_s2", v.thrust_coefficient_n_s2, "N s^2",
+        "thrust of a rotor for its speed in rad/s squared", positive);
+  visit("torque_coefficient_nm_s2", v.torque_coefficient_nm_s2, "N m s^2",
+        "reaction torque of a rotor for its speed in rad/s squared", positive);
+  visit("motor_time_constant_s", v.motor_time_constant_s, "s",
+        "lag of the rotor speed behind its command", Range{0.002, 10.0});
+  visit("linear_drag_xy_kg_s", v.linear_drag_xy_kg_s, "kg/s",
+        "rotor drag along body x and y, for the speed through the air", any_drag);
+  visit("linear_drag_z_kg_s", v.linear_drag_z_kg_s, "kg/s", "rotor drag along body z", any_drag);
+  visit("quadratic_drag_kg_m", v.quadratic_drag_kg_m, "kg/m",
+        "body drag, for the speed through the air squared", any_drag);
+  visit("attitude_tilt_1_s2", a.tilt_1_s2, "1/s^2",
+        "onboard loop: angular acceleration for a roll or pitch error", Range::positive(1e4));
+  visit("attitude_tilt_rate_1_s", a.tilt_rate_1_s, "1/s",
+        "onboard loop: angular acceleration for a roll or pitch rate error", Range::positive(200));
+  visit("attitude_yaw_1_s2", a.yaw_1_s2, "1/s^2",
+        "onboard loop: angular acceleration for a yaw error", Range::positive(1e4));
+  visit("attitude_yaw_rate_1_s", a.yaw_rate_1_s, "1/s",
+        "onboard loop: angular acceleration for a yaw rate error", Range::positive(200));
+  visit("command_timeout_s", c.command_timeout_s, "s",
+        "without a command for this long, the vehicle brakes and holds its position by itself",
+        Range{0.01, 10.0});
+  visit("failsafe_tilt_rad", c.failsafe_tilt_rad, "rad", "steepest tilt of that braking",
+        Range{0.05, 1.2});
+  visit("wind_x_m_s", c.wind_x_m_s, "m/s", "constant wind towards map x", wind);
+  visit("wind_y_m_s", c.wind_y_m_s, "m/s", "constant wind towards map y", wind);
+  visit("wind_z_m_s", c.wind_z_m_s, "m/s", "constant wind upwards", wind);
+  visit("gust_deviation_m_s", c.gust_deviation_m_s, "m/s",
+        "standard deviation of the gusts on each axis; 0 for none", Range{0.0, 10.0});
+  visit("gust_time_s", c.gust_time_s, "s", "correlation time of the gusts", Range{0.01, 100.0});
+  visit("gust_seed", c.gust_seed, "", "the same seed, the same gusts", Range{0.0, 2147483647.0});
+}
+
+/// @return invalid_parameter with every fault of the configuration, the vehicle's physics included
+Status check(const Config& config);
+
+}  // namespace goshawk::simulator

@@ -1,0 +1,35 @@
+#pragma once
+
+#include "goshawk/simulator/vehicle_parameters.hpp"
+
+namespace goshawk::simulator {
+
+/// What the four rotors do together to the body. Frame `base_link`.
+struct Wrench {
+  double thrust_n = 0.0;                // along z
+  Vec3 torque_base_nm = Vec3::Zero();
+};
+
+/// Between the four rotor thrusts and the wrench. Rotor order: front left, rear left, rear right,
+/// front right; neighbours turn in opposite senses.
+class Mixer {
+ public:
+  /// @pre parameters.check() ok
+  explicit Mixer(const VehicleParameters& parameters);
+
+  Wrench wrench(const Eigen::Vector4d& rotor_thrust_n) const;
+
+  /// Rotor thrusts in [0, max_motor_thrust_n] that give the wanted wrench where the motors can.
+  /// Where they cannot, roll and pitch torque come first (without them the vehicle tumbles), then
+  /// collective thrust, then yaw torque, for which thrust gives way by at most a tenth of a
+  /// motor's maximum. After Faessler, Falanga, Scaramuzza 2017 (RA-L), section on saturation.
+  /// @pre wanted is finite
+  Eigen::Vector4d allocate(const Wrench& wanted) const;
+
+ private:
+  double max_n_;
+  double lever_m_;            // distance of each rotor's axis from the body's x and y axes
+  double yaw_per_thrust_m_;   // reaction torque for a newton of thrust
+};
+
+}  // namespace goshawk::simulator

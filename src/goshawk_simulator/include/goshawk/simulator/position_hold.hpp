@@ -1,0 +1,41 @@
+#pragma once
+
+#include "goshawk/core/vehicle.hpp"
+#include "goshawk/simulator/vehicle_parameters.hpp"
+
+namespace goshawk::simulator {
+
+/// What an autopilot does on its own when offboard control is lost: brake, then hover where the
+/// vehicle came to rest, with the yaw it had. Braking is as hard as max_tilt_rad and the motors
+/// allow (a margin of thrust is kept for attitude control).
+class PositionHold {
+ public:
+  /// @pre parameters.check() ok; 0 < max_tilt_rad < pi/2
+  PositionHold(const VehicleParameters& parameters, double max_tilt_rad);
+
+  /// Brake from here on; hover wherever that ends.
+  void engage(const RigidBodyState& state);
+  /// Hover at this very point.
+  void engage_at(const Vec3& position_map, double yaw_rad);
+
+  ThrustAttitude step(const RigidBodyState& state);
+
+  bool braking() const { return braking_; }
+  /// [m] where it hovers; only the place of engagement while braking
+  const Vec3& position_map() const { return position_map_; }
+
+ private:
+  ThrustAttitude thrust_along(const Vec3& acceleration_map) const;
+
+  double mass_kg_;
+  double max_thrust_n_;
+  double max_tilt_rad_;
+  bool braking_ = false;
+  Vec3 position_map_ = Vec3::Zero();
+  double yaw_rad_ = 0.0;
+};
+
+/// [rad] heading of the body's x axis in the map
+double yaw_of(const Eigen::Quaterniond& q_map_base);
+
+}  // namespace goshawk::simulator

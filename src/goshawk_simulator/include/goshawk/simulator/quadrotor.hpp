@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstdint>
+
+#include "goshawk/simulator/config.hpp"
+#include "goshawk/simulator/plant.hpp"
+#include "goshawk/simulator/position_hold.hpp"
+#include "goshawk/simulator/wind.hpp"
+
+namespace goshawk::simulator {
+
+/// Who flies: the commands that come in, or the onboard controller by itself.
+enum class Control { commanded, failsafe };
+
+/// A simulated quadrotor with its autopilot: plant, onboard attitude loop and failsafe, all at
+/// 1 kHz. It hovers from the start; commands take over; when none came for command_timeout_s it
+/// brakes and hovers where that ends, until commands come again. Same calls, same bits.
+///
+///     auto quadrotor = Quadrotor::create(config);
+///     quadrotor->reset({3, 0, 1}, 0.0);
+///     quadrotor->command(tracker_output);   // at any rate
+///     quadrotor->advance(0.004);
+///     publish(quadrotor->state());
+class Quadrotor {
+ public:
+  static constexpr std::int64_t kStep_ns = 1'000'000;
+
+  /// @return invalid_parameter with every fault of the configuration
+  static Result<Quadrotor> create(const Config& config);
+
+  /// Hover at rest with the motors at hover speed; commands, failsafe and gusts begin anew, time
+  /// runs on. @return invalid_input when not finite
+  Status reset(const Vec3& position_map, double yaw_rad);
+
+  /// Takes effect with the next step. A refused command changes nothing: the last good one stays
+  /// and its timeout runs on. Thrust and torque beyond the motors' power are cut by the mixer.
+  /// @return invalid_input: a number is not finite, thrust is negative, the quaternion is not of
+  /// unit length (1e-3), or a body rate is above 100 rad/s
+  Status command(const ThrustAttitude& command);
+
+  /// Lets time pass in whole steps of 1 ms. What is left of dt_s is kept, in nanoseconds, for the
+  /// next call: a thousand calls of 0.0004 s are 400 steps.
+  /// @param dt_s [s] in [0, 3600], rounded to a nanosecond @return invalid_input else
+  Status advance(double dt_s);
+
+  const RigidBodyState& state() const { return state_.body; }
+  Vec3 acceleration_map() const { return plant_.acceleration_map(state_, wind_.velocity_map()); }
+  Eigen::Vector4d rotor_thrust_n() const { return plant_.rotor_thrust_n(state_.rotor_speed_rad_s); }
+  Vec3 wind_map() const { return wind_.velocity_map(); }
+  /// [ns] simulated time since creation: whole steps only
+  std::int64_t time_ns() const { return time_ns_; }
+  Control control() const { return control_; }
+  const Config& config() const { return config_; }
+
+ private:
+  explicit Quadrotor(const Config& config);
+  void step();
+  ThrustAttitude onboard_target();
+
+  Config config_;
+  Plant plant_;
+  Wind wind_;
+  PositionHold hold_;
+  PlantState state_;
+  ThrustAttitude command_;
+  Control control_ = Control::failsafe;
+  std::int64_t time_ns_ = 0;
+  std::int64_t remainder_ns_ = 0;
+  std::int64_t command_time_ns_ = 0;
+  std::int64_t command_timeout_ns_;
+};
+
+}  // namespace goshawk::simulator

@@ -1,0 +1,110 @@
+#include "goshawk/simulator/quadrotor.hpp"
+
+#include <cmath>
+
+namespace goshawk::simulator {
+namespace {
+
+constexpr double kStep_s = double(Quadrotor::kStep_ns) * 1e-9;
+constexpr double kMaxRate_rad_s = 100.0;
+constexpr double kMaxAdvance_s = 3600.0;
+
+Wind::Parameters wind_of(const Config& c) {
+  return {.mean_map = {c.wind_x_m_s, c.wind_y_m_s, c.wind_z_m_s},
+          .gust_deviation_m_s = c.gust_deviation_m_s,
+          .gust_time_s = c.gust_time_s,
+          .seed = std::uint64_t(c.gust_seed)};
+}
+
+Status check(const ThrustAttitude& command) {
+  const auto refuse = [](const std::string& why) {
+    return fail(ErrorCode::invalid_input, "command refused: " + why);
+  };
+  if (!std::isfinite(command.thrust_n)) return refuse("the thrust is not finite");
+  if (command.thrust_n < 0.0) {
+    return refuse("the thrust is " + std::to_string(command.thrust_n) +
+                  " N; rotors only push, it must not be negative");
+  }
+  const double norm = command.q_map_base.norm();
+  if (!(std::abs(norm - 1.0) <= 1e-3)) {
+    return refuse("the attitude's quaternion has length " + std::to_string(norm) +
+                  " and must have unit length");
+  }
+  if (!(command.angular_velocity_base.norm() <= kMaxRate_rad_s)) {
+    return refuse("the body rates are not finite or above " + std::to_string(kMaxRate_rad_s) +
+                  " rad/s");
+  }
+  return success();
+}
+
+}  // namespace
+
+Result<Quadrotor> Quadrotor::create(const Config& config) {
+  if (auto status = simulator::check(config); !status) return status.error();
+  return Quadrotor(config);
+}
+
+Quadrotor::Quadrotor(const Config& config)
+    : config_(config),
+      plant_(config.vehicle),
+      wind_(wind_of(config), kStep_s),
+      hold_(config.vehicle, config.failsafe_tilt_rad),
+      command_timeout_ns_(std::llround(config.command_timeout_s * 1e9)) {
+  if (!reset(Vec3::Zero(), 0.0)) throw std::logic_error("a quadrotor cannot hover at the origin");
+}
+
+Status Quadrotor::reset(const Vec3& position_map, double yaw_rad) {
+  if (!position_map.allFinite() || !std::isfinite(yaw_rad)) {
+    return fail(ErrorCode::invalid_input,
+                "cannot reset to " + to_text(position_map) + " with yaw " +
+                    std::to_string(yaw_rad) + " rad: position and yaw must be finite");
+  }
+  state_ = PlantState{};
+  state_.body.position_map = position_map;
+  state_.body.q_map_base = Eigen::AngleAxisd(yaw_rad, Vec3::UnitZ());
+  state_.rotor_speed_rad_s = plant_.rotor_speed_rad_s(
+      Eigen::Vector4d::Constant(config_.vehicle.weight_n() / 4.0));
+  wind_ = Wind(wind_of(config_), kStep_s);
+  hold_.engage_at(position_map, yaw_rad);
+  control_ = Control::failsafe;
+  remainder_ns_ = 0;
+  return success();
+}
+
+Status Quadrotor::command(const ThrustAttitude& command) {
+  if (auto status = check(command); !status) return status;
+  command_ = command;
+  command_.q_map_base.normalize();
+  command_time_ns_ = time_ns_;
+  control_ = Control::commanded;
+  return success();
+}
+
+Status Quadrotor::advance(double dt_s) {
+  if (!(dt_s >= 0.0 && dt_s <= kMaxAdvance_s)) {
+    return fail(ErrorCode::invalid_input, "cannot advance by " + std::to_string(dt_s) +
+                                              " s: a time step must lie in [0, 3600] s");
+  }
+  remainder_ns_ += std::llround(dt_s * 1e9);
+  for (; remainder_ns_ >= kStep_ns; remainder_ns_ -= kStep_ns) step();
+  return success();
+}
+
+void Quadrotor::step() {
+  const auto wrench = attitude_control(config_.attitude, plant_.inertia_kg_m2(), state_.body,
+                                       onboard_target());
+  const auto rotor_command = plant_.rotor_speed_rad_s(plant_.mixer().allocate(wrench));
+  state_ = plant_.step(state_, rotor_command, wind_.velocity_map(), kStep_s);
+  wind_.step();
+  time_ns_ += kStep_ns;
+}
+
+ThrustAttitude Quadrotor::onboard_target() {
+  if (control_ == Control::commanded && time_ns_ - command_time_ns_ >= command_timeout_ns_) {
+    control_ = Control::failsafe;
+    hold_.engage(state_.body);
+  }
+  return control_ == Control::commanded ? command_ : hold_.step(state_.body);
+}
+
+}  // namespace goshawk::simulator

@@ -1,0 +1,220 @@
+#include "goshawk/simulator/quadrotor.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <numbers>
+
+namespace goshawk::simulator {
+namespace {
+
+Quadrotor make(const Config& config = {}) {
+  auto quadrotor = Quadrotor::create(config);
+  EXPECT_TRUE(quadrotor);
+  return std::move(quadrotor).value();
+}
+
+void advance(Quadrotor& quadrotor, double dt_s) { ASSERT_TRUE(quadrotor.advance(dt_s)); }
+
+ThrustAttitude hover(const Quadrotor& quadrotor) {
+  return {.thrust_n = quadrotor.config().vehicle.weight_n()};
+}
+
+double tilt_rad(const Quadrotor& quadrotor) {
+  return std::acos(std::min(1.0, (quadrotor.state().q_map_base * Vec3::UnitZ()).z()));
+}
+
+// Flies towards x at 2 m/s by commands alone and returns with the speed reached.
+void fly_at_2_m_s(Quadrotor& quadrotor) {
+  for (int i = 0; i < 2000; ++i) {
+    const auto& s = quadrotor.state();
+    const Vec3 force = quadrotor.config().vehicle.mass_kg *
+                       (3.0 * (Vec3(2.0, 0, 0) - s.velocity_map) + Vec3(0.25 * 2.0 + 0.08, 0,
+                        kGravity_m_s2));
+    ThrustAttitude command;
+    command.thrust_n = force.norm();
+    command.q_map_base = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), force);
+    ASSERT_TRUE(quadrotor.command(command));
+    advance(quadrotor, 0.004);
+  }
+  ASSERT_NEAR(quadrotor.state().velocity_map.x(), 2.0, 0.01);
+}
+
+TEST(Quadrotor, HoversFromTheStartWhereItWasReset) {
+  auto quadrotor = make();
+  ASSERT_TRUE(quadrotor.reset({3.0, 0.0, 1.0}, 0.7));
+  EXPECT_NEAR(quadrotor.rotor_thrust_n().sum(), quadrotor.config().vehicle.weight_n(), 1e-12);
+  advance(quadrotor, 5.0);
+  EXPECT_LT((quadrotor.state().position_map - Vec3(3, 0, 1)).norm(), 1e-9);
+  EXPECT_NEAR(yaw_of(quadrotor.state().q_map_base), 0.7, 1e-9);
+  EXPECT_LT(quadrotor.acceleration_map().norm(), 1e-9);
+  EXPECT_EQ(quadrotor.control(), Control::failsafe);
+}
+
+TEST(Quadrotor, TakesTheCommandedAttitudeAndThrust) {
+  auto quadrotor = make();
+  ThrustAttitude command{.thrust_n = 12.0};
+  command.q_map_base = Eigen::AngleAxisd(0.5, Vec3::UnitY()) * Eigen::AngleAxisd(0.3, Vec3::UnitX());
+  for (int i = 0; i < 250; ++i) {
+    ASSERT_TRUE(quadrotor.command(command));
+    advance(quadrotor, 0.004);
+  }
+  EXPECT_LT(quadrotor.state().q_map_base.angularDistance(command.q_map_base), 0.01);
+  EXPECT_NEAR(quadrotor.rotor_thrust_n().sum(), 12.0, 0.01);
+  EXPECT_EQ(quadrotor.control(), Control::commanded);
+}
+
+TEST(Quadrotor, AttitudeStepOfThirtyDegreesSettlesWithLittleOvershoot) {
+  auto quadrotor = make();
+  ThrustAttitude command = hover(quadrotor);
+  const double angle = std::numbers::pi / 6.0;
+  command.q_map_base = Eigen::AngleAxisd(angle, Vec3::UnitX());
+  double peak = 0.0;
+  for (int i = 0; i < 500; ++i) {
+    ASSERT_TRUE(quadrotor.command(command));
+    advance(quadrotor, 0.001);
+    peak = std::max(peak, tilt_rad(quadrotor));
+    if (i > 350) {
+      EXPECT_NEAR(tilt_rad(quadrotor), angle, 0.05 * angle);
+    }
+  }
+  EXPECT_LT(peak, 1.2 * angle);
+}
+
+TEST(Quadrotor, RecoversFromUpsideDown) {
+  auto quadrotor = make();
+  ThrustAttitude command = hover(quadrotor);
+  command.q_map_base = Eigen::AngleAxisd(std::numbers::pi * 0.999, Vec3::UnitX());
+  for (int i = 0; i < 300; ++i) {
+    ASSERT_TRUE(quadrotor.command(command));
+    advance(quadrotor, 0.004);
+  }
+  ASSERT_GT(tilt_rad(quadrotor), 2.8);
+  for (int i = 0; i < 300; ++i) {
+    ASSERT_TRUE(quadrotor.command(hover(quadrotor)));
+    advance(quadrotor, 0.004);
+  }
+  EXPECT_LT(tilt_rad(quadrotor), 0.02);
+}
+
+TEST(Quadrotor, WithoutCommandsItBrakesFromTwoMetresASecondWithinHalfAMetre) {
+  auto quadrotor = make();
+  fly_at_2_m_s(quadrotor);
+  const Vec3 last_command = quadrotor.state().position_map;
+  while (quadrotor.control() == Control::commanded) advance(quadrotor, 0.001);
+  EXPECT_NEAR(double(quadrotor.time_ns()) * 1e-9, 7.996 + 0.1 + 0.001, 1e-9);
+  const Vec3 onset = quadrotor.state().position_map;
+  double farthest = 0.0, farthest_of_all = 0.0, lowest = 0.0, steepest = 0.0;
+  for (int i = 0; i < 5000; ++i) {
+    advance(quadrotor, 0.001);
+    const Vec3 p = quadrotor.state().position_map;
+    farthest = std::max(farthest, (p - onset).head<2>().norm());
+    farthest_of_all = std::max(farthest_of_all, (p - last_command).head<2>().norm());
+    lowest = std::min(lowest, p.z() - onset.z());
+    steepest = std::max(steepest, tilt_rad(quadrotor));
+  }
+  RecordProperty("braking_distance_m", std::to_string(farthest));
+  RecordProperty("distance_since_last_command_m", std::to_string(farthest_of_all));
+  EXPECT_LT(farthest, 0.5);
+  EXPECT_LT(farthest_of_all, 0.7);
+  EXPECT_GT(lowest, -0.05);
+  EXPECT_LT(steepest, 1.25);
+  EXPECT_LT(quadrotor.state().velocity_map.norm(), 0.01);
+  EXPECT_EQ(quadrotor.control(), Control::failsafe);
+
+  ASSERT_TRUE(quadrotor.command(hover(quadrotor)));
+  EXPECT_EQ(quadrotor.control(), Control::commanded);
+}
+
+TEST(Quadrotor, BadCommandsAreRefusedAndTheTimeoutRunsOn) {
+  auto quadrotor = make();
+  const double nan = std::nan("");
+  std::vector<ThrustAttitude> bad(7, hover(quadrotor));
+  bad[0].thrust_n = nan;
+  bad[1].thrust_n = -0.1;
+  bad[2].thrust_n = std::numeric_limits<double>::infinity();
+  bad[3].q_map_base.coeffs().setZero();
+  bad[4].q_map_base.x() = nan;
+  bad[5].angular_velocity_base.y() = nan;
+  bad[6].angular_velocity_base.z() = 1e300;
+  for (const auto& command : bad) {
+    EXPECT_EQ(quadrotor.command(command).code(), ErrorCode::invalid_input);
+  }
+  ASSERT_TRUE(quadrotor.command(hover(quadrotor)));
+  for (int i = 0; i < 40; ++i) {
+    EXPECT_EQ(quadrotor.control(), i * 4 <= 100 ? Control::commanded : Control::failsafe) << i;
+    EXPECT_FALSE(quadrotor.command(bad[std::size_t(i) % bad.size()]));
+    advance(quadrotor, 0.004);
+  }
+  EXPECT_LT(quadrotor.state().velocity_map.norm(), 1e-6);
+}
+
+TEST(Quadrotor, TheHardestCommandsLeaveTheStateFinite) {
+  Config config;
+  config.gust_deviation_m_s = 5.0;
+  auto quadrotor = make(config);
+  Random random(3);
+  for (int i = 0; i < 2000; ++i) {
+    ThrustAttitude command{.thrust_n = random.uniform() < 0.1 ? 1e300 : random.uniform(0, 40)};
+    command.q_map_base = Eigen::Quaterniond(random.uniform(-1, 1), random.uniform(-1, 1),
+                                            random.uniform(-1, 1), random.uniform(-1, 1));
+    command.q_map_base.normalize();
+    command.angular_velocity_base = Vec3(random.uniform(-50, 50), random.uniform(-50, 50),
+                                         random.uniform(-50, 50));
+    ASSERT_TRUE(quadrotor.command(command));
+    advance(quadrotor, 0.005);
+    ASSERT_TRUE(quadrotor.state().is_finite());
+  }
+}
+
+TEST(Quadrotor, PartsOfAStepAddUpInWholeNanoseconds) {
+  auto quadrotor = make();
+  for (int i = 0; i < 1000; ++i) advance(quadrotor, 0.0004);
+  EXPECT_EQ(quadrotor.time_ns(), 400'000'000);
+  for (int i = 0; i < 3; ++i) advance(quadrotor, 1.0 / 3.0);
+  EXPECT_EQ(quadrotor.time_ns(), 1'399'000'000);  // 3 x 333333333 ns: one short of a step
+  advance(quadrotor, 1e-9);
+  EXPECT_EQ(quadrotor.time_ns(), 1'400'000'000);
+}
+
+TEST(Quadrotor, TimeThatIsNotATimeStepIsRefused) {
+  auto quadrotor = make();
+  for (const double dt : {-0.001, std::nan(""), 1e9, std::numeric_limits<double>::infinity()}) {
+    EXPECT_EQ(quadrotor.advance(dt).code(), ErrorCode::invalid_input);
+  }
+  EXPECT_EQ(quadrotor.time_ns(), 0);
+  EXPECT_EQ(quadrotor.reset({0, std::nan(""), 0}, 0).code(), ErrorCode::invalid_input);
+  EXPECT_EQ(quadrotor.reset({0, 0, 0}, std::nan("")).code(), ErrorCode::invalid_input);
+}
+
+TEST(Quadrotor, TheSameCallsGiveTheSameBits) {
+  Config config;
+  config.wind_x_m_s = 2.0;
+  config.gust_deviation_m_s = 1.0;
+  auto a = make(config), b = make(config);
+  for (int i = 0; i < 500; ++i) {
+    ThrustAttitude command = hover(a);
+    command.q_map_base = Eigen::AngleAxisd(0.1 * std::sin(0.05 * i), Vec3::UnitX());
+    ASSERT_TRUE(a.command(command));
+    ASSERT_TRUE(b.command(command));
+    advance(a, 0.004);
+    for (int k = 0; k < 4; ++k) advance(b, 0.001);  // the same time in other parts
+    ASSERT_EQ(std::memcmp(a.state().position_map.data(), b.state().position_map.data(), 24), 0);
+    ASSERT_EQ(a.state().q_map_base.coeffs(), b.state().q_map_base.coeffs());
+  }
+}
+
+TEST(Quadrotor, HoldsItsPositionByItselfInAModerateWind) {
+  Config config;
+  config.wind_y_m_s = 3.0;
+  auto quadrotor = make(config);
+  advance(quadrotor, 10.0);
+  // No integral action onboard: the offset is the drag's acceleration over the position gain.
+  EXPECT_LT(quadrotor.state().position_map.norm(), 0.2);
+  EXPECT_LT(quadrotor.state().velocity_map.norm(), 1e-3);
+}
+
+}  // namespace
+}  // namespace goshawk::simulator

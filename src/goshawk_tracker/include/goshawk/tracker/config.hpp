@@ -1,0 +1,104 @@
+#pragma once
+
+#include <concepts>
+#include <string>
+#include <type_traits>
+
+#include "goshawk/core/parameter.hpp"
+#include "goshawk/core/result.hpp"
+
+namespace goshawk::tracker {
+
+/// Defaults are tuned for the default vehicle of goshawk_simulator; README.md, Tuning.
+struct Config {
+  std::string controller = "pd";
+  std::string yaw = "plan";
+
+  double mass_kg = 1.0;
+  double min_thrust_n = 2.0;
+  double max_thrust_n = 25.0;
+  double max_tilt_rad = 0.8;
+  double linear_drag_xy_kg_s = 0.25;
+  double linear_drag_z_kg_s = 0.15;
+  double actuation_delay_s = 0.03;
+
+  double position_xy_1_s2 = 9.0;
+  double position_z_1_s2 = 12.0;
+  double velocity_xy_1_s = 5.0;
+  double velocity_z_1_s = 6.0;
+  double max_feedback_m_s2 = 6.0;
+  double disturbance_bandwidth_rad_s = 2.5;
+  double max_disturbance_m_s2 = 4.0;
+  double max_yaw_rate_rad_s = 1.0;
+
+  double start_tolerance_m = 0.3;
+  double start_velocity_tolerance_m_s = 0.5;
+  double max_error_m = 0.5;
+  double max_jump_m = 0.5;
+  double odometry_timeout_s = 0.1;
+  double brake_acceleration_m_s2 = 2.0;
+};
+
+template <typename Self, typename Visitor>
+  requires std::same_as<std::remove_const_t<Self>, Config>
+void describe(Self& c, Visitor&& visit) {
+  visit("controller", c.controller, "",
+        "pd: thesis, PD with feedforward; geometric: on SE(3), after Lee, Leok, McClamroch 2010",
+        OneOf{{"pd", "geometric"}});
+  visit("yaw", c.yaw, "", "plan: the trajectory's yaw; keep: the yaw at the first odometry",
+        OneOf{{"plan", "keep"}});
+  visit("mass_kg", c.mass_kg, "kg", "mass of the vehicle", Range::positive(1000.0));
+  visit("min_thrust_n", c.min_thrust_n, "N", "least collective thrust that is asked for",
+        Range{0.0, 1e5});
+  visit("max_thrust_n", c.max_thrust_n, "N",
+        "most collective thrust that is asked for; leave the motors some for attitude control",
+        Range::positive(1e5));
+  visit("max_tilt_rad", c.max_tilt_rad, "rad", "steepest tilt that is asked for",
+        Range{0.05, 1.2});
+  visit("linear_drag_xy_kg_s", c.linear_drag_xy_kg_s, "kg/s",
+        "known horizontal drag for the speed, compensated beforehand", Range{0.0, 100.0});
+  visit("linear_drag_z_kg_s", c.linear_drag_z_kg_s, "kg/s", "likewise vertical",
+        Range{0.0, 100.0});
+  visit("actuation_delay_s", c.actuation_delay_s, "s",
+        "feedforward is taken this far ahead: lag of motors and attitude loop, and transport",
+        Range{0.0, 0.3});
+  visit("position_xy_1_s2", c.position_xy_1_s2, "1/s^2",
+        "acceleration for a horizontal position error", Range::positive(100.0));
+  visit("position_z_1_s2", c.position_z_1_s2, "1/s^2", "acceleration for a height error",
+        Range::positive(100.0));
+  visit("velocity_xy_1_s", c.velocity_xy_1_s, "1/s",
+        "acceleration for a horizontal velocity error", Range::positive(50.0));
+  visit("velocity_z_1_s", c.velocity_z_1_s, "1/s", "acceleration for a climb rate error",
+        Range::positive(50.0));
+  visit("max_feedback_m_s2", c.max_feedback_m_s2, "m/s^2",
+        "largest acceleration that position and velocity errors may ask for",
+        Range::positive(50.0));
+  visit("disturbance_bandwidth_rad_s", c.disturbance_bandwidth_rad_s, "rad/s",
+        "how fast unknown steady forces (wind) are learnt and cancelled; 0: not at all",
+        Range{0.0, 20.0});
+  visit("max_disturbance_m_s2", c.max_disturbance_m_s2, "m/s^2",
+        "largest unknown acceleration that is cancelled", Range{0.0, 20.0});
+  visit("max_yaw_rate_rad_s", c.max_yaw_rate_rad_s, "rad/s", "how fast the vehicle is turned",
+        Range::positive(10.0));
+  visit("start_tolerance_m", c.start_tolerance_m, "m",
+        "how far from the vehicle, or from the trajectory flown, a new one may begin",
+        Range::positive(10.0));
+  visit("start_velocity_tolerance_m_s", c.start_velocity_tolerance_m_s, "m/s",
+        "likewise for its velocity", Range::positive(10.0));
+  visit("max_error_m", c.max_error_m, "m",
+        "beyond this tracking error tracking is lost: the reference brakes along its path",
+        Range::positive(100.0));
+  visit("max_jump_m", c.max_jump_m, "m",
+        "odometry that moves this much more than its velocity explains has jumped",
+        Range::positive(100.0));
+  visit("odometry_timeout_s", c.odometry_timeout_s, "s", "older odometry is not flown on",
+        Range{0.001, 10.0});
+  visit("brake_acceleration_m_s2", c.brake_acceleration_m_s2, "m/s^2",
+        "deceleration of the reference when it brakes along its path", Range{0.1, 20.0});
+}
+
+/// @return invalid_parameter with every fault: out of range, and a vehicle whose thrust bounds do
+/// not hold its weight between them
+Status check(const Config& config);
+
+}  // namespace goshawk::tracker

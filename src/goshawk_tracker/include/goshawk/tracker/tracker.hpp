@@ -1,0 +1,105 @@
+#pragma once
+
+#include <vector>
+
+#include "goshawk/tracker/committed_trajectory.hpp"
+#include "goshawk/tracker/position_controller.hpp"
+#include "goshawk/tracker/reference.hpp"
+
+namespace goshawk::tracker {
+
+enum class Mode {
+  idle,    // no odometry yet
+  hold,    // at a point: where the first odometry was, or where a trajectory or braking ended
+  follow,  // on a trajectory
+  brake,   // slowing down to a stop, along the trajectory's path
+};
+std::string_view to_string(Mode mode);
+
+struct TrackingStatus {
+  Mode mode = Mode::idle;
+  Error fault{ErrorCode::ok, ""};   // ok, or why the trajectory is not followed as planned
+  std::uint64_t trajectory_id = 0;  // the one followed or come to rest on; 0: none yet
+  double progress_s = 0.0;          // along it
+  double duration_s = 0.0;
+  int queued = 0;                   // trajectories accepted whose time has not come
+  FlatState reference;              // where the vehicle should be
+  double error_m = 0.0;             // latest distance from there
+  double rms_error_m = 0.0;         // since the trajectory was switched to, rest after it included
+  double max_error_m = 0.0;
+  Vec3 disturbance_map = Vec3::Zero();  // [m/s^2] learnt
+};
+
+/// Flies certified trajectories; hovers before and after. Time is an argument everywhere, on one
+/// clock [ns]; the same calls give the same bits; step() allocates nothing.
+///
+///     auto tracker = Tracker::create(config);
+///     auto command = tracker->step(odometry, stamp_ns, now_ns);      // at odometry's rate
+///     if (command) publish(*command); else report(command.error());  // silence is what makes
+///                                                                    // the vehicle brake
+///     Status answer = tracker->accept(committed, now_ns);            // whenever one comes
+class Tracker {
+ public:
+  /// @return invalid_parameter with every fault of the configuration
+  static Result<Tracker> create(const Config& config);
+
+  /// Takes on a trajectory. With its start still to come it waits in a queue, and the present
+  /// reference is followed until exactly then; those queued for the same time or later are
+  /// replaced. With its start past it is followed at once, from where it should be by now.
+  /// A refused trajectory changes nothing. Sentences name the trajectory and the reason.
+  /// @return all of admit(); not_at_start: no odometry yet, or it does not pass the vehicle, nor
+  ///         the present reference, within the start tolerances; deadline_exceeded: it has ended
+  Status accept(CommittedTrajectory committed, std::int64_t now_ns);
+
+  /// Stop on the path and hold there; what is queued is dropped. On a held point: nothing new.
+  void brake(std::int64_t now_ns);
+
+  /// @param stamp_ns [ns] when `state` was true @param now_ns [ns]
+  /// @return the command; or invalid_input (not finite, no unit quaternion, older than the last,
+  ///         from the future), tracking_lost (older than odometry_timeout_s). A stamp that falls
+  ///         back by more than odometry_timeout_s is a restarted clock: everything is forgotten,
+  ///         and the vehicle holds where it is.
+  Result<ThrustAttitude> step(const RigidBodyState& state, std::int64_t stamp_ns,
+                              std::int64_t now_ns);
+  Result<ThrustAttitude> step(const RigidBodyState& state, std::int64_t now_ns) {
+    return step(state, now_ns, now_ns);
+  }
+
+  /// As of the last step().
+  TrackingStatus status() const;
+
+ private:
+  explicit Tracker(const Config& config);
+  Status check_odometry(const RigidBodyState& state, std::int64_t stamp_ns,
+                        std::int64_t now_ns) const;
+  Status check_start(const CommittedTrajectory& committed, std::int64_t now_ns) const;
+  FlatState reference_at(std::int64_t time_ns) const;
+  void hold_here(const RigidBodyState& state);
+  void take_in(const RigidBodyState& state, std::int64_t stamp_ns);
+  void switch_trajectories(std::int64_t now_ns);
+  void watch_error(std::int64_t now_ns);
+  double turn(std::int64_t now_ns);
+  double wanted_yaw() const;
+
+  Config config_;
+  PositionController controller_;
+  Reference reference_ = Reference::hold(Vec3::Zero());
+  std::vector<CommittedTrajectory> queue_;  // by start time
+
+  bool has_state_ = false;
+  RigidBodyState state_;
+  std::int64_t stamp_ns_ = 0;
+  double since_last_s_ = 0.0;  // between the last two states
+  std::int64_t now_ns_ = 0;
+  double first_yaw_rad_ = 0.0;
+  double yaw_rad_ = 0.0;
+
+  bool lost_ = false;  // until another trajectory is switched to
+  Error fault_{ErrorCode::ok, ""};
+  double error_m_ = 0.0;
+  double squared_error_m2_ = 0.0;
+  double max_error_m_ = 0.0;
+  std::int64_t samples_ = 0;
+};
+
+}  // namespace goshawk::tracker

@@ -1,0 +1,41 @@
+#include "goshawk/tracker/flatness.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace goshawk::tracker {
+
+ThrustAttitude thrust_attitude_of(const Vec3& specific_force_map,
+                                  const Vec3& specific_force_rate_map, double yaw_rad,
+                                  double yaw_rate_rad_s, double mass_kg) {
+  const double force = specific_force_map.norm();
+  const Vec3 heading(std::cos(yaw_rad), std::sin(yaw_rad), 0.0);
+  const Vec3 heading_left(-heading.y(), heading.x(), 0.0);
+  const Vec3 z = specific_force_map / force;
+  const Vec3 y = z.cross(heading).normalized();
+  const Vec3 x = y.cross(z);
+
+  // The derivative of z is omega x z: its parts along x and y are omega_y and -omega_x.
+  const Vec3 z_rate = (specific_force_rate_map - z.dot(specific_force_rate_map) * z) / force;
+  const double omega_x = -y.dot(z_rate);
+  const double omega_y = x.dot(z_rate);
+  // y stays at right angles to the heading: the derivative of y . heading = 0 gives omega_z.
+  const double omega_z =
+      (omega_x * z.dot(heading) + yaw_rate_rad_s * y.dot(heading_left)) / x.dot(heading);
+
+  Eigen::Matrix3d R_map_base;
+  R_map_base << x, y, z;
+  return {mass_kg * force, Eigen::Quaterniond(R_map_base).normalized(),
+          {omega_x, omega_y, omega_z}};
+}
+
+double yaw_of(const Eigen::Quaterniond& q_map_base) {
+  const Vec3 x_base = q_map_base * Vec3::UnitX();
+  return std::atan2(x_base.y(), x_base.x());
+}
+
+double wrapped(double angle_rad) {
+  return std::remainder(angle_rad, 2.0 * std::numbers::pi);
+}
+
+}  // namespace goshawk::tracker

@@ -1,0 +1,252 @@
+#include "goshawk/tracker/tracker.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "goshawk/tracker/admission.hpp"
+#include "goshawk/tracker/flatness.hpp"
+
+namespace goshawk::tracker {
+namespace {
+
+constexpr std::int64_t kTimeBound_ns = 4'000'000'000'000'000'000;  // differences do not overflow
+
+double seconds(std::int64_t from_ns, std::int64_t to_ns) { return double(to_ns - from_ns) * 1e-9; }
+
+bool within_bound(std::int64_t time_ns) {
+  return time_ns >= -kTimeBound_ns && time_ns <= kTimeBound_ns;
+}
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
+}  // namespace
+
+std::string_view to_string(Mode mode) {
+  switch (mode) {
+    case Mode::idle: return "idle";
+    case Mode::hold: return "hold";
+    case Mode::follow: return "follow";
+    case Mode::brake: return "brake";
+  }
+  throw std::logic_error("to_string() of no Mode");
+}
+
+Result<Tracker> Tracker::create(const Config& config) {
+  if (auto status = check(config); !status) return status.error();
+  return Tracker(config);
+}
+
+Tracker::Tracker(const Config& config) : config_(config), controller_(config) {}
+
+Status Tracker::accept(CommittedTrajectory committed, std::int64_t now_ns) {
+  if (auto status = admit(committed, config_); !status) return status;
+  if (auto status = check_start(committed, now_ns); !status) return status;
+  std::erase_if(queue_, [&](const CommittedTrajectory& queued) {
+    return queued.start_time_ns >= committed.start_time_ns;
+  });
+  queue_.push_back(std::move(committed));
+  return success();
+}
+
+Status Tracker::check_start(const CommittedTrajectory& committed, std::int64_t now_ns) const {
+  const auto refuse = [&](ErrorCode code, const std::string& why) {
+    return fail(code, "trajectory " + std::to_string(committed.id) + " refused: " + why);
+  };
+  if (!within_bound(now_ns)) return refuse(ErrorCode::invalid_input, "now is beyond all clocks");
+  if (!has_state_) {
+    return refuse(ErrorCode::not_at_start, "there is no odometry yet to tell where the vehicle is");
+  }
+  const Reference candidate = Reference::follow(committed);
+  const std::int64_t joins_ns = std::max(committed.start_time_ns, now_ns);
+  if (seconds(committed.start_time_ns, joins_ns) >= candidate.duration_s()) {
+    return refuse(ErrorCode::deadline_exceeded,
+                  "it ended " +
+                      number(seconds(committed.start_time_ns, now_ns) - candidate.duration_s()) +
+                      " s ago; commit it with a later start");
+  }
+  const FlatState joint = candidate.at(joins_ns);
+  const auto is_near = [&](const Vec3& position, const Vec3& velocity) {
+    return (joint.position - position).norm() <= config_.start_tolerance_m &&
+           (joint.velocity - velocity).norm() <= config_.start_velocity_tolerance_m_s;
+  };
+  const FlatState present = reference_at(joins_ns);
+  if (is_near(present.position, present.velocity)) return success();
+  // Where the vehicle is now tells where it will be only when it joins now, or hovers.
+  const bool joins_now = committed.start_time_ns <= now_ns;
+  const Vec3 vehicle =
+      state_.position_map +
+      (joins_now ? std::clamp(seconds(stamp_ns_, now_ns), 0.0, config_.odometry_timeout_s) : 0.0) *
+          state_.velocity_map;
+  if ((joins_now || (reference_.at_rest(now_ns) && queue_.empty())) &&
+      is_near(vehicle, state_.velocity_map)) {
+    return success();
+  }
+  return refuse(
+      ErrorCode::not_at_start,
+      "it begins at " + to_text(joint.position) + " m with " + to_text(joint.velocity) +
+          " m/s, while the vehicle is to be at " + to_text(present.position) + " m with " +
+          to_text(present.velocity) + " m/s then and is now at " + to_text(state_.position_map) +
+          " m; plan from there");
+}
+
+void Tracker::brake(std::int64_t now_ns) {
+  queue_.clear();
+  reference_.brake(now_ns, config_.brake_acceleration_m_s2);
+}
+
+Result<ThrustAttitude> Tracker::step(const RigidBodyState& state, std::int64_t stamp_ns,
+                                     std::int64_t now_ns) {
+  if (auto status = check_odometry(state, stamp_ns, now_ns); !status) {
+    if (!lost_) fault_ = status.error();
+    return status.error();
+  }
+  if (!lost_) fault_ = Error{ErrorCode::ok, ""};
+  take_in(state, stamp_ns);
+  switch_trajectories(now_ns);
+  watch_error(now_ns);
+
+  const double yaw_rate = turn(now_ns);
+  now_ns_ = now_ns;
+  const std::int64_t ahead_ns = now_ns + std::llround(config_.actuation_delay_s * 1e9);
+  return controller_.step(state_,
+                          {.now = reference_.at(stamp_ns_),
+                           .ahead = reference_.at(ahead_ns),
+                           .yaw_rad = yaw_rad_,
+                           .yaw_rate_rad_s = yaw_rate},
+                          since_last_s_);
+}
+
+Status Tracker::check_odometry(const RigidBodyState& state, std::int64_t stamp_ns,
+                               std::int64_t now_ns) const {
+  const auto invalid = [](const std::string& why) {
+    return fail(ErrorCode::invalid_input, "odometry refused: " + why);
+  };
+  if (!within_bound(stamp_ns) || !within_bound(now_ns)) return invalid("its time is no time");
+  if (!state.is_finite()) return invalid("a number in it is not finite");
+  if (!(std::abs(state.q_map_base.norm() - 1.0) <= 1e-3)) {
+    return invalid("its quaternion has length " + number(state.q_map_base.norm()) + ", not one");
+  }
+  const double age_s = seconds(stamp_ns, now_ns);
+  if (age_s < -config_.odometry_timeout_s) {
+    return invalid("it is stamped " + number(-age_s) + " s in the future; are the clocks the same?");
+  }
+  if (age_s > config_.odometry_timeout_s) {
+    return fail(ErrorCode::tracking_lost, "odometry is " + number(age_s) + " s old, more than " +
+                                              number(config_.odometry_timeout_s) +
+                                              " s; is its source alive?");
+  }
+  const double back_s = has_state_ ? seconds(stamp_ns, stamp_ns_) : 0.0;
+  if (back_s > 0.0 && back_s <= config_.odometry_timeout_s) {
+    return invalid("it is " + number(back_s) + " s older than the last");
+  }
+  return success();
+}
+
+// The state, and what a first one, a restarted clock or a jump mean for the reference.
+void Tracker::take_in(const RigidBodyState& state, std::int64_t stamp_ns) {
+  const bool restarted = has_state_ && stamp_ns < stamp_ns_;
+  if (!has_state_ || restarted) {
+    hold_here(state);
+    first_yaw_rad_ = yaw_rad_ = yaw_of(state.q_map_base);
+    now_ns_ = stamp_ns;
+    stamp_ns_ = stamp_ns;
+    lost_ = false;
+    fault_ = Error{ErrorCode::ok, ""};
+  } else {
+    const double dt = seconds(stamp_ns_, stamp_ns);
+    const double speed = std::max(state.velocity_map.norm(), state_.velocity_map.norm());
+    const double moved = (state.position_map - state_.position_map).norm();
+    if (moved > speed * dt + config_.max_jump_m) {
+      // The vehicle is where it was, but its coordinates are not: no path in them can be trusted.
+      hold_here(state);
+      lost_ = true;
+      fault_ = fail(ErrorCode::tracking_lost,
+                    "odometry jumped by " + number(moved) + " m; holding where it says to be now");
+    }
+  }
+  since_last_s_ = seconds(stamp_ns_, stamp_ns);
+  has_state_ = true;
+  state_ = state;
+  state_.q_map_base.normalize();
+  stamp_ns_ = stamp_ns;
+}
+
+void Tracker::hold_here(const RigidBodyState& state) {
+  reference_ = Reference::hold(state.position_map);
+  queue_.clear();
+  controller_.reset();
+  squared_error_m2_ = max_error_m_ = 0.0;
+  samples_ = 0;
+}
+
+void Tracker::switch_trajectories(std::int64_t now_ns) {
+  while (!queue_.empty() && queue_.front().start_time_ns <= now_ns) {
+    reference_ = Reference::follow(std::move(queue_.front()));
+    queue_.erase(queue_.begin());
+    lost_ = false;
+    fault_ = Error{ErrorCode::ok, ""};
+    squared_error_m2_ = max_error_m_ = 0.0;
+    samples_ = 0;
+  }
+}
+
+void Tracker::watch_error(std::int64_t now_ns) {
+  error_m_ = (state_.position_map - reference_.at(stamp_ns_).position).norm();
+  squared_error_m2_ += error_m_ * error_m_;
+  max_error_m_ = std::max(max_error_m_, error_m_);
+  ++samples_;
+  if (lost_ || error_m_ <= config_.max_error_m) return;
+  lost_ = true;
+  fault_ = fail(ErrorCode::tracking_lost,
+                "the vehicle is " + number(error_m_) + " m from where it should be, more than " +
+                    number(config_.max_error_m) + " m: stopping on the path; plan again from there");
+  brake(now_ns);
+}
+
+double Tracker::wanted_yaw() const {
+  if (config_.yaw == "keep" || !reference_.has_trajectory()) return first_yaw_rad_;
+  return reference_.committed().yaw_rad;
+}
+
+// The heading moves towards the wanted one at a bounded rate. @return [rad/s] that rate
+double Tracker::turn(std::int64_t now_ns) {
+  const double dt = seconds(now_ns_, now_ns);
+  if (!(dt > 0.0)) return 0.0;
+  const double most = config_.max_yaw_rate_rad_s * std::min(dt, config_.odometry_timeout_s);
+  const double change = std::clamp(wrapped(wanted_yaw() - yaw_rad_), -most, most);
+  yaw_rad_ = wrapped(yaw_rad_ + change);
+  return change / dt;
+}
+
+FlatState Tracker::reference_at(std::int64_t time_ns) const {
+  const auto next = std::find_if(queue_.rbegin(), queue_.rend(), [&](const auto& queued) {
+    return queued.start_time_ns <= time_ns;
+  });
+  return next == queue_.rend() ? reference_.at(time_ns) : Reference::follow(*next).at(time_ns);
+}
+
+TrackingStatus Tracker::status() const {
+  TrackingStatus s;
+  if (!has_state_) return s;
+  s.mode = reference_.at_rest(now_ns_) ? Mode::hold
+           : reference_.braking()      ? Mode::brake
+                                       : Mode::follow;
+  s.fault = fault_;
+  if (reference_.has_trajectory()) s.trajectory_id = reference_.committed().id;
+  s.progress_s = reference_.progress_s(now_ns_);
+  s.duration_s = reference_.duration_s();
+  s.queued = int(queue_.size());
+  s.reference = reference_.at(now_ns_);
+  s.error_m = error_m_;
+  s.rms_error_m = samples_ > 0 ? std::sqrt(squared_error_m2_ / double(samples_)) : 0.0;
+  s.max_error_m = max_error_m_;
+  s.disturbance_map = controller_.disturbance_map();
+  return s;
+}
+
+}  // namespace goshawk::tracker

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <deque>
+#include <functional>
+
+#include "goshawk/core/random.hpp"
+#include "goshawk/simulator/quadrotor.hpp"
+#include "goshawk/tracker/tracker.hpp"
+
+namespace goshawk::tracker {
+
+/// A certified C2 trajectory of quintics through random points, at rest at both ends, whose curve
+/// (not only its hull) reaches v_max or a_max. @param start where it begins
+CommittedTrajectory random_trajectory(Random& random, const Vec3& start, int pieces,
+                                      double v_max_m_s, double a_max_m_s2);
+
+/// Start to end in one quintic from rest to rest, certified inside a large box.
+CommittedTrajectory straight_line(const Vec3& start, const Vec3& end, double duration_s);
+
+/// The limits that its own hull keeps, and the start and goal it has: so that it certifies.
+void certify_as_is(CommittedTrajectory& committed);
+
+/// How long odometry takes to come and commands to arrive; drawn anew for each.
+struct Link {
+  std::int64_t period_ns = 4'000'000;              // of odometry
+  std::function<std::int64_t()> gap_ns;            // in place of the period, where set
+  std::int64_t odometry_delay_ns = 0;
+  std::int64_t command_delay_ns = 4'000'000;       // one step
+  std::function<bool()> drop;                      // loses the command, where set
+};
+
+/// Tracker and simulated vehicle, joined by a link with delays. Time in whole milliseconds.
+class ClosedLoop {
+ public:
+  ClosedLoop(const Config& tracker, const simulator::Config& vehicle, Link link = {});
+
+  /// [m] of the vehicle's true position from the trajectory, over a run
+  struct Errors {
+    double rms_m = 0.0;
+    double max_m = 0.0;
+    double final_m = 0.0;
+  };
+  /// Runs until the given time; `each` is called every millisecond.
+  void run_until(std::int64_t end_ns, const std::function<void()>& each = {});
+  /// Accepts the trajectory, flies it, and `rest_s` beyond its end.
+  Errors fly(CommittedTrajectory committed, double rest_s = 1.0);
+
+  simulator::Quadrotor vehicle;
+  Tracker tracker;
+  Error last_error{ErrorCode::ok, ""};
+  int failsafe_ms = 0;
+  bool connected = true;  // odometry is taken and commands are sent
+
+ private:
+  struct Arrival {
+    std::int64_t time_ns;
+    ThrustAttitude command;
+  };
+  void exchange();
+
+  Link link_;
+  std::int64_t next_odometry_ns_ = 0;
+  std::deque<Arrival> arrivals_;
+};
+
+}  // namespace goshawk::tracker
