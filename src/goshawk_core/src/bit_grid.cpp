@@ -1,6 +1,8 @@
 #include "goshawk/core/bit_grid.hpp"
 
+#include <algorithm>
 #include <bit>
+#include <utility>
 
 namespace goshawk {
 namespace {

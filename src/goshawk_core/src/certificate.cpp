@@ -10,15 +10,52 @@
 namespace goshawk {
 namespace {
 
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+// The larger violation. NaN is the worst of all and stays; std::max would lose it.
+void raise(double& worst, double violation) {
+  if (!std::isnan(worst) && !(violation <= worst)) worst = violation;
+}
+
 template <typename Points>
 double size_of_largest(const Points& points, LimitNorm norm) {
-  return norm == LimitNorm::euclidean ? points.colwise().norm().maxCoeff()
-                                      : points.cwiseAbs().maxCoeff();
+  return norm == LimitNorm::euclidean
+             ? points.colwise().norm().template maxCoeff<Eigen::PropagateNaN>()
+             : points.cwiseAbs().template maxCoeff<Eigen::PropagateNaN>();
 }
 
 double difference(const FlatState& a, const FlatState& b) {
-  return std::max({(a.position - b.position).norm(), (a.velocity - b.velocity).norm(),
-                   (a.acceleration - b.acceleration).norm()});
+  double worst = (a.position - b.position).norm();
+  raise(worst, (a.velocity - b.velocity).norm());
+  raise(worst, (a.acceleration - b.acceleration).norm());
+  return worst;
+}
+
+double position_violation(const BezierPiece& piece, const Polytope& polytope) {
+  if (!polytope.check()) return kNaN;
+  double worst = polytope.violation(piece.control_points.col(0));
+  for (int j = 1; j < 6; ++j) raise(worst, polytope.violation(piece.control_points.col(j)));
+  return worst;
+}
+
+void certify_piece(const BezierPiece& piece, const Polytope& polytope, const Limits& limits,
+                   Certificate& c) {
+  raise(c.position_m, position_violation(piece, polytope));
+  // A negative duration would turn the velocity round and keep its length.
+  const bool sound = piece.duration_s > 0.0 && limits.check().ok();
+  raise(c.velocity_m_s,
+        sound ? size_of_largest(piece.velocity_points(), limits.norm) - limits.v_max_m_s : kNaN);
+  raise(c.acceleration_m_s2,
+        sound ? size_of_largest(piece.acceleration_points(), limits.norm) - limits.a_max_m_s2
+              : kNaN);
+}
+
+void certify_joint(const BezierPiece& before, const BezierPiece& after, Certificate& c) {
+  const auto end = before.sample(before.duration_s);
+  const auto begin = after.sample(0.0);
+  raise(c.joint_position_m, (end.position - begin.position).norm());
+  raise(c.joint_velocity_m_s, (end.velocity - begin.velocity).norm());
+  raise(c.joint_acceleration_m_s2, (end.acceleration - begin.acceleration).norm());
 }
 
 std::array<std::pair<const char*, double>, 8> families(const Certificate& c) {
@@ -72,24 +109,8 @@ Certificate certify(const Trajectory& trajectory, std::span<const Polytope> poly
       throw std::out_of_range("certify(): a piece names polytope " +
                               std::to_string(piece.polytope) + ", which is not there");
     }
-    const Polytope& polytope = polytopes[std::size_t(piece.polytope)];
-    for (int j = 0; j < 6; ++j) {
-      c.position_m = std::max(c.position_m, polytope.violation(piece.control_points.col(j)));
-    }
-    c.velocity_m_s = std::max(c.velocity_m_s, size_of_largest(piece.velocity_points(),
-                                                              limits.norm) - limits.v_max_m_s);
-    c.acceleration_m_s2 =
-        std::max(c.acceleration_m_s2,
-                 size_of_largest(piece.acceleration_points(), limits.norm) - limits.a_max_m_s2);
-    if (before != nullptr) {
-      const auto end = before->sample(before->duration_s);
-      const auto begin = piece.sample(0.0);
-      c.joint_position_m = std::max(c.joint_position_m, (end.position - begin.position).norm());
-      c.joint_velocity_m_s =
-          std::max(c.joint_velocity_m_s, (end.velocity - begin.velocity).norm());
-      c.joint_acceleration_m_s2 =
-          std::max(c.joint_acceleration_m_s2, (end.acceleration - begin.acceleration).norm());
-    }
+    certify_piece(piece, polytopes[std::size_t(piece.polytope)], limits, c);
+    if (before != nullptr) certify_joint(*before, piece, c);
     before = &piece;
   }
   c.start_m = difference(trajectory.pieces.front().sample(0.0), start);

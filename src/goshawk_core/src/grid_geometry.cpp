@@ -51,7 +51,7 @@ Result<Index3> locate(const VoxelGrid& grid, const Vec3& p_map, Endpoint endpoin
                 name + " is outside the map, which spans " + to_text(grid.geometry.origin_map) +
                     " to " + to_text(grid.geometry.upper_corner_map()) + " m");
   }
-  if (grid.occupied.get(*index)) {
+  if (grid.occupied.test(*index)) {
     if (grid.unknown_is_occupied && !grid.is_known(*index)) {
       return fail(start ? ErrorCode::start_unknown : ErrorCode::goal_unknown,
                   name + " lies in unknown space, which counts as occupied: choose a point that "

@@ -8,18 +8,19 @@ namespace {
 
 using Word = BitGrid::Word;
 
-// Half extent along x, in voxels, of the structuring element at offset (dy, dz): the largest k
-// with gap(k)^2 + gap(dy)^2 + gap(dz)^2 < r^2, gap(k) = max(0, |k| - 1), r in voxels; -1 if none.
-int half_extent(int dy, int dz, double r) {
-  const auto gap = [](int k) { return std::max(0, std::abs(k) - 1); };
-  const double rest = r * r - double(gap(dy)) * gap(dy) - double(gap(dz)) * gap(dz);
+// Half extent along x, in voxels, of the structuring element at offset (dy, dz): the largest
+// k <= limit with gap(k)^2 + gap(dy)^2 + gap(dz)^2 < r^2, gap(k) = max(0, |k| - 1), r > 0 in
+// voxels; -1 if none.
+int half_extent(int dy, int dz, double r, int limit) {
+  const auto gap = [](int k) { return double(std::max(0, std::abs(k) - 1)); };
+  const double taken = gap(dy) * gap(dy) + gap(dz) * gap(dz);
   // A radius of n voxels must not reach n + 1 through rounding (0.6 / 0.2 > 3): the strict
-  // comparison gets a slack far below a hair and far above an ulp.
-  const double slack = 1e-9 * std::max(1.0, r * r);
-  if (rest <= slack) return -1;
-  int k = 1;
-  while (double(k) * k < rest - slack) ++k;
-  return k;
+  // comparison gets a slack far below a hair and far above an ulp. It is relative, and what
+  // touches (taken = 0) is met however small the radius.
+  const double rest = r * r * (1.0 - 1e-9) - taken;
+  if (taken > 0.0 && rest <= 0.0) return -1;
+  const double k = std::max(1.0, std::ceil(std::sqrt(std::max(0.0, rest))));
+  return int(std::min(k, double(limit)));
 }
 
 // out |= in shifted by `shift` voxels towards larger x (smaller if negative), whole row.
@@ -64,12 +65,11 @@ struct Offset {
 // The structuring element's rows, narrow ones first, clipped to what can matter in the grid.
 std::vector<Offset> structuring_element(double r, Index3 size) {
   std::vector<Offset> rows;
-  const int reach = half_extent(0, 0, r);
-  const int reach_y = std::min(reach, size.y - 1);
-  const int reach_z = std::min(reach, size.z - 1);
+  const int reach_y = half_extent(0, 0, r, size.y - 1);
+  const int reach_z = half_extent(0, 0, r, size.z - 1);
   for (int dz = -reach_z; dz <= reach_z; ++dz) {
     for (int dy = -reach_y; dy <= reach_y; ++dy) {
-      const int k = std::min(half_extent(dy, dz, r), size.x);
+      const int k = half_extent(dy, dz, r, size.x);
       if (k >= 0) rows.push_back({dy, dz, k});
     }
   }
@@ -77,6 +77,13 @@ std::vector<Offset> structuring_element(double r, Index3 size) {
     return a.half_extent < b.half_extent;
   });
   return rows;
+}
+
+// Does a radius of r voxels join any two voxels of a grid? Then there is nothing to compute, and
+// the structuring element would be larger than the grid.
+bool reaches_everywhere(double r, Index3 size) {
+  const auto gap = [](int n) { return double(std::max(0, n - 2)); };
+  return r > 1.001 * std::hypot(gap(size.x), gap(size.y), gap(size.z));
 }
 
 bool any(const Word* row, std::size_t words) {
@@ -96,10 +103,15 @@ Result<BitGrid> inflate(const BitGrid& occupied, double radius_m, double resolut
                     std::to_string(resolution_m) + " m: both must be finite, the radius at least "
                     "0, the resolution above 0");
   }
-  if (radius_m == 0.0) return occupied;
   const Index3 size = occupied.size();
+  if (auto status = BitGrid::check_size(size); !status) return status.error();
+  if (radius_m == 0.0) return occupied;
+  const double r = radius_m / resolution_m;
+  if (reaches_everywhere(r, size)) {
+    return BitGrid(size, occupied.outside(), occupied.count() > 0);
+  }
   const std::size_t words = occupied.words_per_row();
-  const auto element = structuring_element(radius_m / resolution_m, size);
+  const auto element = structuring_element(r, size);
   // Only real bits may be a source: padding stands for the outside, which does not grow.
   const Word last_mask = (size.x & 63) == 0 ? ~Word{0} : (Word{1} << (size.x & 63)) - 1;
 

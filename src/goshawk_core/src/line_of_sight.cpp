@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <utility>
 
 namespace goshawk {
 namespace {
@@ -13,9 +16,26 @@ struct Range {
   int last;
 };
 
-// Indices of the closed unit intervals [i, i + 1] that meet the closed interval [lo, hi].
-Range intervals_met(double lo, double hi) {
-  return {int(std::ceil(lo - kSlack)) - 1, int(std::floor(hi + kSlack))};
+// The voxels that a walk may visit. A walk through a grid whose outside is free is kept to the
+// grid, so that no segment, however long, takes longer than the grid is wide.
+struct Bounds {
+  Index3 first;
+  Index3 last;
+
+  Range axis(int i) const {
+    const int lo[] = {first.x, first.y, first.z};
+    const int hi[] = {last.x, last.y, last.z};
+    return {lo[i], hi[i]};
+  }
+};
+
+// Indices within bounds of the closed unit intervals [i, i + 1] that meet the closed interval
+// [lo, hi]. Compared as doubles first: a cast of a huge value to int is undefined.
+Range intervals_met(double lo, double hi, Range bounds) {
+  const double first = std::max(std::ceil(lo - kSlack) - 1.0, double(bounds.first));
+  const double last = std::min(std::floor(hi + kSlack), double(bounds.last));
+  if (!(first <= last)) return {0, -1};
+  return {int(first), int(last)};
 }
 
 struct Interval {
@@ -44,7 +64,7 @@ Interval extent(const Vec3& a, const Vec3& d, int axis, Interval t) {
 // Slabs along the longest axis, rows within a slab, voxels within a row: each cut is taken of
 // the segment itself, with slack, so that no cube that is met is missed.
 template <typename Visit>  // bool Visit(Index3): false stops
-bool walk(const Vec3& a, const Vec3& b, const Visit& visit) {
+bool walk(const Vec3& a, const Vec3& b, const Bounds& bounds, const Visit& visit) {
   const Vec3 d = b - a;
   int u = 0;
   d.cwiseAbs().maxCoeff(&u);
@@ -52,19 +72,19 @@ bool walk(const Vec3& a, const Vec3& b, const Visit& visit) {
   const int w = (u + 2) % 3;
   const Interval whole{0.0, 1.0};
   const Interval along = extent(a, d, u, whole);
-  const Range slabs = intervals_met(along.lo, along.hi);
+  const Range slabs = intervals_met(along.lo, along.hi, bounds.axis(u));
   const bool forward = d[u] >= 0.0;
   for (int n = 0; n <= slabs.last - slabs.first; ++n) {
     const int i = forward ? slabs.first + n : slabs.last - n;
     const Interval t = clip(a, d, u, i - kSlack, i + 1 + kSlack, whole);
     if (t.lo > t.hi) continue;
     const Interval across = extent(a, d, v, t);
-    const Range rows = intervals_met(across.lo, across.hi);
+    const Range rows = intervals_met(across.lo, across.hi, bounds.axis(v));
     for (int j = rows.first; j <= rows.last; ++j) {
       const Interval s = clip(a, d, v, j - kSlack, j + 1 + kSlack, t);
       if (s.lo > s.hi) continue;
       const Interval rest = extent(a, d, w, s);
-      const Range cells = intervals_met(rest.lo, rest.hi);
+      const Range cells = intervals_met(rest.lo, rest.hi, bounds.axis(w));
       for (int k = cells.first; k <= cells.last; ++k) {
         int index[3];
         index[u] = i;
@@ -77,10 +97,21 @@ bool walk(const Vec3& a, const Vec3& b, const Visit& visit) {
   return true;
 }
 
+// Is p so far inside that no voxel beyond the grid is met there?
+bool inside(const Vec3& p, Index3 size) {
+  const Vec3 upper(size.x, size.y, size.z);
+  return (p.array() > kSlack).all() && (p.array() < upper.array() - kSlack).all();
+}
+
 }  // namespace
 
 bool line_is_free(const BitGrid& blocked, const Vec3& a, const Vec3& b) {
-  return walk(a, b, [&](Index3 i) { return !blocked.test(i); });
+  // Nothing is known of a segment that is not finite, so it is not free.
+  if (!is_finite(a) || !is_finite(b)) return false;
+  const Index3 size = blocked.size();
+  if (blocked.outside() && !(inside(a, size) && inside(b, size))) return false;
+  const Bounds bounds{{0, 0, 0}, size - Index3{1, 1, 1}};
+  return walk(a, b, bounds, [&](Index3 i) { return !blocked.get(i); });
 }
 
 bool line_is_free(const VoxelGrid& grid, const Vec3& a_map, const Vec3& b_map) {
@@ -88,8 +119,12 @@ bool line_is_free(const VoxelGrid& grid, const Vec3& a_map, const Vec3& b_map) {
 }
 
 std::vector<Index3> supercover(const Vec3& a, const Vec3& b) {
+  constexpr int far = 1 << 30;
+  if (!((a.array().abs() < far).all() && (b.array().abs() < far).all())) {
+    throw std::invalid_argument("supercover() of a segment that is not finite, or too far away");
+  }
   std::vector<Index3> cells;
-  walk(a, b, [&](Index3 i) {
+  walk(a, b, Bounds{{-far, -far, -far}, {far, far, far}}, [&](Index3 i) {
     cells.push_back(i);
     return true;
   });

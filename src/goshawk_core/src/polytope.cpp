@@ -1,6 +1,7 @@
 #include "goshawk/core/polytope.hpp"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -19,6 +20,7 @@ class LargestBall {
   explicit LargestBall(std::span<const Polytope* const> polytopes) : polytopes_(polytopes) {}
 
   Ball solve() {
+    if (!finite()) return {Vec3::Zero(), -std::numeric_limits<double>::infinity()};
     const double far = 1e6;
     const double s = 1.0 / std::sqrt(3.0);
     set_basis(0, Vec4(-1, 0, 0, 1), far);
@@ -32,21 +34,51 @@ class LargestBall {
       if (!find_entering(iteration > 200)) break;
       const Vec4 weights = basis_.transpose().fullPivLu().solve(Vec4(0, 0, 0, 1));
       const Vec4 direction = basis_.transpose().fullPivLu().solve(entering_);
-      int leaving = -1;
-      double best = std::numeric_limits<double>::infinity();
-      for (int i = 0; i < 4; ++i) {
-        if (direction[i] > 1e-12 && weights[i] / direction[i] < best) {
-          best = weights[i] / direction[i];
-          leaving = i;
-        }
-      }
+      const int leaving = find_leaving(weights, direction);
       if (leaving < 0) break;  // cannot be with finite data: the dual is bounded
       set_basis(leaving, entering_, entering_bound_);
     }
-    return {point_.head<3>(), point_[3]};
+    // The simplex method comes from outside: whatever rounding, or the iteration limit, left
+    // undone, the ball that is returned is inside.
+    return {point_.head<3>(), std::min(point_[3], room_at(point_.head<3>()))};
   }
 
  private:
+  bool finite() const {
+    return std::ranges::all_of(polytopes_, [](const Polytope* p) {
+      return p->A.rows() == p->b.size() && p->A.allFinite() && p->b.allFinite();
+    });
+  }
+
+  // Distance to the nearest face, negative outside.
+  double room_at(const Vec3& p) const {
+    double room = std::numeric_limits<double>::infinity();
+    for (const Polytope* polytope : polytopes_) {
+      for (int i = 0; i < polytope->faces(); ++i) {
+        room = std::min(room, polytope->b[i] - polytope->A.row(i).dot(p));
+      }
+    }
+    return room;
+  }
+
+  // Ratio test. Boxes make ties the rule (weights of zero); of those the largest pivot leaves,
+  // which keeps the basis far from singular.
+  static int find_leaving(const Vec4& weights, const Vec4& direction) {
+    constexpr double pivot = 1e-9;
+    double least = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < 4; ++i) {
+      if (direction[i] > pivot) {
+        least = std::min(least, std::max(0.0, weights[i]) / direction[i]);
+      }
+    }
+    int leaving = -1;
+    for (int i = 0; i < 4; ++i) {
+      if (direction[i] <= pivot || weights[i] / direction[i] > least + 1e-12) continue;
+      if (leaving < 0 || direction[i] > direction[leaving]) leaving = i;
+    }
+    return leaving;
+  }
+
   void set_basis(int i, const Vec4& row, double bound) {
     basis_.row(i) = row;
     bound_[i] = bound;
@@ -123,7 +155,10 @@ Ball chebyshev_ball(const Polytope& a, const Polytope& b) {
 
 double Corridor::min_overlap_radius_m() const {
   double least = std::numeric_limits<double>::infinity();
-  for (const Ball& ball : overlaps) least = std::min(least, ball.radius_m);
+  for (const Ball& ball : overlaps) {
+    if (std::isnan(ball.radius_m)) return ball.radius_m;
+    least = std::min(least, ball.radius_m);
+  }
   return least;
 }
 
@@ -134,6 +169,11 @@ Status Corridor::check() const {
                 "a corridor of " + std::to_string(polytopes.size()) + " polytopes has " +
                     std::to_string(waypoints_map.size()) + " waypoints and " +
                     std::to_string(overlaps.size()) + " overlaps: n, n + 1 and n - 1 are needed");
+  }
+  for (std::size_t k = 0; k < overlaps.size(); ++k) {
+    if (!is_finite(overlaps[k].center_map) || !std::isfinite(overlaps[k].radius_m)) {
+      return fail(ErrorCode::invalid_input, "overlap " + std::to_string(k) + " is not finite");
+    }
   }
   for (std::size_t k = 0; k < polytopes.size(); ++k) {
     if (auto status = polytopes[k].check(); !status) {

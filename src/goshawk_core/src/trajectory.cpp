@@ -1,7 +1,9 @@
 #include "goshawk/core/trajectory.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <stdexcept>
 
 namespace goshawk {
 namespace {
@@ -103,12 +105,17 @@ FlatState Trajectory::sample(double t_s) const {
 }
 
 Trajectory::Peaks Trajectory::peaks(int samples_per_piece) const {
+  if (samples_per_piece < 1) throw std::invalid_argument("Trajectory::peaks of no samples");
+  // Written so that NaN stays: a curve of NaN is not one at rest.
+  const auto raise = [](double& peak, double value) {
+    if (!std::isnan(peak) && !(value <= peak)) peak = value;
+  };
   Peaks peaks;
   for (const auto& piece : pieces) {
     for (int i = 0; i <= samples_per_piece; ++i) {
       const auto state = piece.sample(piece.duration_s * i / samples_per_piece);
-      peaks.speed_m_s = std::max(peaks.speed_m_s, state.velocity.norm());
-      peaks.acceleration_m_s2 = std::max(peaks.acceleration_m_s2, state.acceleration.norm());
+      raise(peaks.speed_m_s, state.velocity.norm());
+      raise(peaks.acceleration_m_s2, state.acceleration.norm());
     }
   }
   return peaks;

@@ -6,7 +6,9 @@ namespace goshawk {
 
 std::string to_text(const Vec3& p) {
   char text[96];
-  std::snprintf(text, sizeof text, "(%.3f, %.3f, %.3f)", p.x(), p.y(), p.z());
+  const bool huge = !(p.cwiseAbs().maxCoeff() < 1e12);  // whose digits would not fit
+  std::snprintf(text, sizeof text, huge ? "(%g, %g, %g)" : "(%.3f, %.3f, %.3f)", p.x(), p.y(),
+                p.z());
   return text;
 }
 

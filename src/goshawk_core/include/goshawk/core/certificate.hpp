@@ -21,7 +21,9 @@ struct Limits {
 
 /// The largest violation of each family of constraints, computed from the control points alone;
 /// zero or below where a family holds. With position <= 0, velocity <= 0 and acceleration <= 0 the
-/// hull property proves the whole curve safe and within limits.
+/// hull property proves the whole curve safe and within limits. A family that meets a NaN, an
+/// invalid polytope, an invalid limit or a duration that is not above zero is NaN, and then the
+/// certificate does not hold.
 struct Certificate {
   double position_m = 0.0;            // control points outside their polytope, max of A c - b
   double velocity_m_s = 0.0;          // velocity control points above v_max
@@ -39,7 +41,7 @@ struct Certificate {
 };
 
 /// @param start, goal the states that the trajectory was asked to begin and end with
-/// @pre trajectory.check() ok; each piece's polytope index within the span (else throws)
+/// @pre at least one piece; each piece's polytope index within the span (else throws)
 Certificate certify(const Trajectory& trajectory, std::span<const Polytope> polytopes,
                     const Limits& limits, const FlatState& start, const FlatState& goal);
 

@@ -12,7 +12,8 @@ namespace goshawk {
 /// @param occupied obstacles
 /// @param radius_m [m] finite, >= 0; 0 returns a copy
 /// @param resolution_m [m] > 0
-/// @return invalid_input for a radius or a resolution that is not allowed
+/// @return invalid_input for a radius or a resolution that is not allowed, map_empty for an empty
+/// grid
 Result<BitGrid> inflate(const BitGrid& occupied, double radius_m, double resolution_m);
 
 }  // namespace goshawk

@@ -12,14 +12,15 @@ namespace goshawk {
 ///
 /// The test is conservative against rounding: a voxel counts as met when the segment comes within
 /// 1e-9 voxel edges of it.
-/// @param a, b [voxel units, GridGeometry::to_grid] finite
+/// @param a, b [voxel units, GridGeometry::to_grid]; a segment that is not finite is not free
 bool line_is_free(const BitGrid& blocked, const Vec3& a, const Vec3& b);
 
 /// The same in map coordinates. @param a_map, b_map [m]
 bool line_is_free(const VoxelGrid& grid, const Vec3& a_map, const Vec3& b_map);
 
-/// Every voxel that line_is_free looks at, in order along the segment; for drawing and tests.
-/// May contain indices outside any grid.
+/// Every voxel that line_is_free looks at, each once, slab by slab from a to b along the segment's
+/// longest axis; for drawing and tests. May contain indices outside any grid.
+/// @pre coordinates below 2^30 (else throws)
 std::vector<Index3> supercover(const Vec3& a, const Vec3& b);
 
 }  // namespace goshawk

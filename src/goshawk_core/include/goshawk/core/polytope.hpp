@@ -18,8 +18,10 @@ struct Polytope {
   void add(const Vec3& outward_normal, double offset_m);
 
   /// @return [m] the largest A p - b: negative inside (minus the distance to the nearest face),
-  /// positive outside. @pre faces() > 0
-  double violation(const Vec3& p_map) const { return (A * p_map - b).maxCoeff(); }
+  /// positive outside; NaN where the point or any face is NaN. @pre faces() > 0
+  double violation(const Vec3& p_map) const {
+    return (A.lazyProduct(p_map) - b).maxCoeff<Eigen::PropagateNaN>();
+  }
 
   /// Sizes agree, everything finite, normals of unit length.
   Status check() const;
@@ -34,7 +36,8 @@ struct Ball {
 
 /// The largest ball inside the intersection of one or two polytopes (a linear programme in four
 /// unknowns, solved by the simplex method; deterministic, nothing allocated).
-/// An unbounded polytope gives a ball of some 1e6 m.
+/// An unbounded polytope gives a ball of some 1e6 m; one that is not finite, or whose sizes
+/// disagree, a radius of minus infinity. The ball is inside even after rounding.
 Ball chebyshev_ball(const Polytope& polytope);
 Ball chebyshev_ball(const Polytope& a, const Polytope& b);
 
@@ -44,9 +47,10 @@ struct Corridor {
   std::vector<Vec3> waypoints_map;     // [m] n + 1: start, joints, goal
   std::vector<Polytope> polytopes;     // n
   std::vector<Ball> overlaps;          // n - 1: largest ball shared by polytopes k and k + 1
-  double min_overlap_radius_m() const;  // [m] infinity for one polytope
+  double min_overlap_radius_m() const;  // [m] infinity for one polytope, NaN if one is
 
-  /// n >= 1, sizes agree, polytopes valid, waypoints inside the polytopes they belong to.
+  /// n >= 1, sizes agree, polytopes valid, overlaps finite, waypoints inside the polytopes they
+  /// belong to.
   Status check() const;
 };
 

@@ -50,8 +50,8 @@ struct Trajectory {
   /// what to do beyond the end is the caller's decision)
   FlatState sample(double t_s) const;
 
-  /// Fastest speed and largest acceleration on the curve itself, not its hull: `samples` equal
-  /// steps a piece.
+  /// Fastest speed and largest acceleration on the curve itself, not its hull, over equal steps of
+  /// each piece. @pre samples_per_piece >= 1 (else throws)
   struct Peaks {
     double speed_m_s = 0.0;
     double acceleration_m_s2 = 0.0;

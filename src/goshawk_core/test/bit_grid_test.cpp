@@ -1,0 +1,171 @@
+#include "goshawk/core/bit_grid.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <vector>
+
+#include "goshawk/core/random.hpp"
+
+namespace goshawk {
+namespace {
+
+constexpr int kHuge = std::numeric_limits<int>::max();
+
+// Row lengths on both sides of the word boundaries.
+const std::vector<Index3> kSizes{{1, 1, 1},  {5, 4, 3},   {63, 3, 2},  {64, 3, 2},
+                                 {65, 3, 2}, {127, 2, 3}, {128, 1, 2}, {130, 2, 2}};
+
+struct Reference {  // a bool a voxel
+  explicit Reference(Index3 s) : size(s), bits(std::size_t(s.x * s.y * s.z)) {}
+  std::vector<bool>::reference at(Index3 i) {
+    return bits[std::size_t((i.z * size.y + i.y) * size.x + i.x)];
+  }
+  Index3 size;
+  std::vector<bool> bits;
+};
+
+void expect_equal(const BitGrid& grid, Reference& reference) {
+  std::int64_t set = 0;
+  const Index3 s = grid.size();
+  for (int z = -1; z <= s.z; ++z) {
+    for (int y = -1; y <= s.y; ++y) {
+      for (int x = -2; x <= s.x + 70; ++x) {
+        const Index3 i{x, y, z};
+        const bool inside = x >= 0 && x < s.x && y >= 0 && y < s.y && z >= 0 && z < s.z;
+        ASSERT_EQ(grid.contains(i), inside) << to_text(i);
+        ASSERT_EQ(grid.test(i), inside ? bool(reference.at(i)) : grid.outside()) << to_text(i);
+        if (inside) {
+          ASSERT_EQ(grid.get(i), bool(reference.at(i)));
+          set += grid.get(i) ? 1 : 0;
+        }
+      }
+    }
+  }
+  ASSERT_EQ(grid.count(), set);
+}
+
+void expect_padding_is_outside(const BitGrid& grid) {
+  for (int z = 0; z < grid.size().z; ++z) {
+    for (int y = 0; y < grid.size().y; ++y) {
+      for (int x = grid.size().x; x < int(64 * grid.words_per_row()); ++x) {
+        ASSERT_EQ((grid.row(y, z)[x / 64] >> (x % 64)) & 1U, grid.outside() ? 1U : 0U);
+      }
+    }
+  }
+}
+
+TEST(BitGrid, StoresWhatIsSetAndKeepsThePadding) {
+  Random random(1);
+  for (const Index3 size : kSizes) {
+    for (const bool outside : {false, true}) {
+      BitGrid grid(size, outside);
+      Reference reference(size);
+      expect_equal(grid, reference);
+      for (int n = 0; n < 300; ++n) {
+        const Index3 i{random.below(size.x), random.below(size.y), random.below(size.z)};
+        const bool value = random.chance(0.6);
+        grid.set(i, value);
+        reference.at(i) = value;
+      }
+      expect_equal(grid, reference);
+      expect_padding_is_outside(grid);
+    }
+  }
+}
+
+TEST(BitGrid, SetsRunsLikeSingleVoxels) {
+  Random random(2);
+  for (const Index3 size : kSizes) {
+    BitGrid grid(size, true);
+    Reference reference(size);
+    for (int n = 0; n < 200; ++n) {
+      int x0 = random.below(size.x + 1);
+      int x1 = random.below(size.x + 1);
+      if (n == 0) x0 = 0, x1 = size.x;  // a whole row
+      if (x0 > x1) std::swap(x0, x1);
+      const int y = random.below(size.y);
+      const int z = random.below(size.z);
+      const bool value = n == 0 || random.chance(0.5);
+      grid.set_run(x0, x1, y, z, value);
+      for (int x = x0; x < x1; ++x) reference.at({x, y, z}) = value;
+    }
+    expect_equal(grid, reference);
+    expect_padding_is_outside(grid);
+  }
+}
+
+TEST(BitGrid, FillsEveryVoxelAndNoPadding) {
+  for (const Index3 size : kSizes) {
+    for (const bool outside : {false, true}) {
+      const BitGrid grid(size, outside, true);
+      EXPECT_EQ(grid.count(), grid.voxels());
+      EXPECT_EQ(grid.voxels(), std::int64_t{size.x} * size.y * size.z);
+      expect_padding_is_outside(grid);
+    }
+  }
+}
+
+TEST(BitGrid, AdoptsWordsAndRepairsTheirPadding) {
+  Random random(3);
+  for (const Index3 size : kSizes) {
+    for (const bool outside : {false, true}) {
+      BitGrid shape(size, outside);
+      std::vector<BitGrid::Word> words(shape.words().size());
+      for (auto& word : words) word = random.next();
+      const auto grid = BitGrid::from_words(size, outside, words);
+      ASSERT_TRUE(grid.ok());
+      expect_padding_is_outside(*grid);
+      Reference reference(size);
+      const std::size_t per_row = shape.words_per_row();
+      for (std::size_t w = 0; w < words.size(); ++w) {
+        const int row = int(w / per_row);
+        for (int bit = 0; bit < 64; ++bit) {
+          const Index3 i{int(w % per_row) * 64 + bit, row % size.y, row / size.y};
+          if (i.x < size.x) reference.at(i) = ((words[w] >> bit) & 1U) != 0;
+        }
+      }
+      BitGrid copy = *grid;
+      expect_equal(copy, reference);
+      EXPECT_TRUE(copy == *grid);
+      EXPECT_EQ(BitGrid::from_words(size, outside, copy.take_words()).value(), *grid);
+      EXPECT_TRUE(copy.empty());
+      EXPECT_EQ(copy.voxels(), 0);
+      EXPECT_EQ(copy.test({0, 0, 0}), outside);
+    }
+  }
+}
+
+TEST(BitGrid, RefusesWordsOfTheWrongNumber) {
+  for (const std::size_t words : {0U, 5U, 7U}) {
+    const auto grid = BitGrid::from_words({65, 3, 1}, true, std::vector<BitGrid::Word>(words));
+    ASSERT_FALSE(grid.ok());
+    EXPECT_EQ(grid.code(), ErrorCode::invalid_input);
+    EXPECT_NE(grid.error().message.find("needs 6 words"), std::string::npos);
+  }
+  EXPECT_EQ(BitGrid::from_words({0, 3, 1}, true, {}).code(), ErrorCode::map_empty);
+}
+
+TEST(BitGrid, ChecksSizesWithoutOverflow) {
+  EXPECT_EQ(BitGrid::check_size({0, 1, 1}).code(), ErrorCode::map_empty);
+  EXPECT_EQ(BitGrid::check_size({1, -1, 1}).code(), ErrorCode::map_empty);
+  EXPECT_EQ(BitGrid::check_size({1, 1, -kHuge}).code(), ErrorCode::map_empty);
+  EXPECT_EQ(BitGrid::check_size({kHuge, kHuge, kHuge}).code(), ErrorCode::map_too_large);
+  EXPECT_EQ(BitGrid::check_size({4, kHuge, kHuge}).code(), ErrorCode::map_too_large);
+  EXPECT_TRUE(BitGrid::check_size({2048, 2048, 2048}).ok());
+  EXPECT_EQ(BitGrid::check_size({2048, 2048, 2049}).code(), ErrorCode::map_too_large);
+  EXPECT_THROW(BitGrid({0, 1, 1}, true), std::logic_error);
+  EXPECT_THROW(BitGrid({kHuge, kHuge, kHuge}, true), std::logic_error);
+}
+
+TEST(BitGrid, AnEmptyGridIsAllOutside) {
+  const BitGrid grid;
+  EXPECT_TRUE(grid.empty());
+  EXPECT_FALSE(grid.contains({0, 0, 0}));
+  EXPECT_TRUE(grid.test({0, 0, 0}));
+  EXPECT_EQ(grid.count(), 0);
+  EXPECT_TRUE(BitGrid({1, 1, 1}, false).test({kHuge, -kHuge, 0}) == false);
+}
+
+}  // namespace
+}  // namespace goshawk

@@ -1,0 +1,254 @@
+#include "goshawk/core/certificate.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <vector>
+
+#include "goshawk/core/random.hpp"
+
+namespace goshawk {
+namespace {
+
+struct Plan {
+  Trajectory trajectory;
+  std::vector<Polytope> polytopes;
+  Limits limits{.v_max_m_s = 20.0, .a_max_m_s2 = 100.0, .norm = LimitNorm::euclidean};
+  FlatState start;
+  FlatState goal;
+
+  Certificate certificate() const { return certify(trajectory, polytopes, limits, start, goal); }
+};
+
+// Smooth through three pieces, inside wide boxes and wide limits: every family holds.
+Plan good_plan(Random& random) {
+  Plan plan;
+  FlatState state;
+  plan.start = state;
+  for (int k = 0; k < 3; ++k) {
+    FlatState next;
+    next.position = state.position + Vec3(1, random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5));
+    if (k < 2) {
+      next.velocity = Vec3(1, random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5));
+      next.acceleration = Vec3(random.uniform(-1, 1), random.uniform(-1, 1), 0);
+    }
+    plan.trajectory.pieces.push_back(BezierPiece::between(state, next, random.uniform(0.8, 1.5)));
+    plan.trajectory.pieces.back().polytope = k;
+    plan.polytopes.push_back(
+        Polytope::box(state.position - Vec3::Constant(5), next.position + Vec3::Constant(5)));
+    state = next;
+  }
+  plan.goal = state;
+  return plan;
+}
+
+TEST(Certificate, HoldsForASmoothTrajectoryInsideItsLimits) {
+  Random random(1);
+  for (int n = 0; n < 100; ++n) {
+    const Plan plan = good_plan(random);
+    const Certificate c = plan.certificate();
+    ASSERT_TRUE(c.holds()) << c.worst();
+    ASSERT_LT(c.position_m, 0.0);
+    ASSERT_LT(c.velocity_m_s, 0.0);
+    ASSERT_LT(c.acceleration_m_s2, 0.0);
+    ASSERT_LT(c.joint_position_m + c.joint_velocity_m_s + c.joint_acceleration_m_s2, 1e-9);
+  }
+}
+
+TEST(Certificate, BoundsWhatDenseSamplingFinds) {
+  Random random(2);
+  for (int n = 0; n < 200; ++n) {
+    Plan plan = good_plan(random);
+    plan.limits.norm = n % 2 == 0 ? LimitNorm::euclidean : LimitNorm::per_axis;
+    plan.limits.v_max_m_s = random.uniform(0.5, 5.0);
+    plan.limits.a_max_m_s2 = random.uniform(0.5, 20.0);
+    for (auto& polytope : plan.polytopes) polytope.b.array() -= random.uniform(0.0, 5.5);
+    const Certificate c = plan.certificate();
+    const auto size = [&](const Vec3& v) {
+      return n % 2 == 0 ? v.norm() : v.cwiseAbs().maxCoeff();
+    };
+    double position = -HUGE_VAL;
+    double speed = 0.0;
+    double acceleration = 0.0;
+    for (const auto& piece : plan.trajectory.pieces) {
+      for (int i = 0; i <= 200; ++i) {
+        const FlatState s = piece.sample(piece.duration_s * i / 200.0);
+        position =
+            std::max(position, plan.polytopes[std::size_t(piece.polytope)].violation(s.position));
+        speed = std::max(speed, size(s.velocity));
+        acceleration = std::max(acceleration, size(s.acceleration));
+      }
+    }
+    ASSERT_GE(c.position_m, position - 1e-9);
+    ASSERT_GE(c.velocity_m_s, speed - plan.limits.v_max_m_s - 1e-9);
+    ASSERT_GE(c.acceleration_m_s2, acceleration - plan.limits.a_max_m_s2 - 1e-9);
+  }
+}
+
+TEST(Certificate, MeasuresEachViolation) {
+  Random random(3);
+  const Plan good = good_plan(random);
+  const auto broken = [&](const std::function<void(Plan&)>& harm) {
+    Plan plan = good;
+    harm(plan);
+    return plan.certificate();
+  };
+  const auto names = [](const Certificate& c, const std::string& family) {
+    EXPECT_FALSE(c.holds());
+    EXPECT_EQ(c.worst().rfind(family + " is violated", 0), 0U) << c.worst();
+  };
+  // The start is 5 m inside each face of its box: 5.5 m off puts it 0.5 m outside.
+  const auto wall = broken([](Plan& p) { p.polytopes[0].b.array() -= 5.5; });
+  EXPECT_NEAR(wall.position_m, 0.5, 0.5);
+  EXPECT_GE(wall.position_m, 0.5 - 1e-12);
+  names(wall, "position");
+  const auto start = broken([](Plan& p) { p.start.velocity.x() += 0.25; });
+  EXPECT_NEAR(start.start_m, 0.25, 1e-9);
+  names(start, "start");
+  const auto goal = broken([](Plan& p) { p.goal.acceleration.z() -= 0.125; });
+  EXPECT_NEAR(goal.goal_m, 0.125, 1e-9);
+  names(goal, "goal");
+  const auto jump =
+      broken([](Plan& p) { p.trajectory.pieces[1].control_points.colwise() += Vec3(0.01, 0, 0); });
+  EXPECT_NEAR(jump.joint_position_m, 0.01, 1e-12);
+  names(jump, "joint position");
+  const auto kink = broken([](Plan& p) { p.trajectory.pieces[1].duration_s *= 1.1; });
+  EXPECT_GT(kink.joint_velocity_m_s, 0.05);
+  EXPECT_GT(kink.joint_acceleration_m_s2, 0.0);
+  EXPECT_FALSE(kink.holds());
+  const auto fast = broken([](Plan& p) { p.limits.v_max_m_s = 0.1; });
+  EXPECT_GT(fast.velocity_m_s, 0.9);  // it passes its joints with more than 1 m/s
+  names(fast, "velocity");
+  const auto hard = broken([](Plan& p) { p.limits.a_max_m_s2 = 0.1; });
+  EXPECT_GT(hard.acceleration_m_s2, 0.0);
+  names(hard, "acceleration");
+}
+
+TEST(Certificate, EuclideanLimitsAreTighterThanPerAxis) {
+  FlatState start;
+  FlatState end;
+  end.position = Vec3(1, 1, 1);
+  Plan plan;
+  plan.trajectory.pieces = {BezierPiece::between(start, end, 5.0)};
+  plan.polytopes = {Polytope::box(Vec3::Constant(-1), Vec3::Constant(2))};
+  plan.goal = end;
+  // Along the diagonal of a cube: the length is sqrt(3) times a component. The hull's fastest
+  // velocity point of a rest-to-rest quintic is 5 L/T.
+  plan.limits = {.v_max_m_s = 1.2, .a_max_m_s2 = 10.0, .norm = LimitNorm::per_axis};
+  EXPECT_NEAR(plan.certificate().velocity_m_s, 1.0 - 1.2, 1e-12);
+  EXPECT_TRUE(plan.certificate().holds());
+  plan.limits.norm = LimitNorm::euclidean;
+  EXPECT_NEAR(plan.certificate().velocity_m_s, std::sqrt(3.0) - 1.2, 1e-12);
+  EXPECT_FALSE(plan.certificate().holds());
+}
+
+TEST(Certificate, ToleratesWhatTheToleranceSays) {
+  Certificate c;
+  EXPECT_TRUE(c.holds());
+  c.joint_velocity_m_s = 1e-5;
+  EXPECT_FALSE(c.holds());
+  EXPECT_TRUE(c.holds(1e-4));
+  EXPECT_FALSE(c.holds(NAN));
+  EXPECT_EQ(c.worst(), "joint velocity is violated by 1e-05");
+}
+
+// A certificate that ignores one NaN lets a vehicle fly anywhere: every number that goes in is
+// replaced by NaN, one at a time.
+TEST(Certificate, DoesNotHoldForNaNInAnyNumberOfAnyPiece) {
+  Random random(4);
+  const Plan good = good_plan(random);
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), double(INFINITY)}) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (int i = 0; i < 18; ++i) {
+        Plan plan = good;
+        plan.trajectory.pieces[k].control_points(i % 3, i / 3) = bad;
+        ASSERT_FALSE(plan.certificate().holds()) << "control point of piece " << k << ", " << i;
+      }
+      Plan plan = good;
+      plan.trajectory.pieces[k].duration_s = bad;
+      ASSERT_FALSE(plan.certificate().holds()) << "duration of piece " << k;
+      for (int face = 0; face < 6; ++face) {
+        plan = good;
+        plan.polytopes[k].b[face] = bad;
+        ASSERT_FALSE(plan.certificate().holds()) << "offset " << face;
+        for (int axis = 0; axis < 3; ++axis) {
+          plan = good;
+          plan.polytopes[k].A(face, axis) = bad;
+          ASSERT_FALSE(plan.certificate().holds()) << "normal " << face;
+        }
+      }
+    }
+  }
+}
+
+TEST(Certificate, DoesNotHoldForNaNInTheEndsOrTheLimits) {
+  Random random(5);
+  const Plan good = good_plan(random);
+  const std::vector<std::function<double&(Plan&)>> numbers{
+      [](Plan& p) -> double& { return p.start.position.x(); },
+      [](Plan& p) -> double& { return p.start.velocity.y(); },
+      [](Plan& p) -> double& { return p.start.acceleration.z(); },
+      [](Plan& p) -> double& { return p.goal.position.z(); },
+      [](Plan& p) -> double& { return p.goal.velocity.x(); },
+      [](Plan& p) -> double& { return p.goal.acceleration.y(); },
+      [](Plan& p) -> double& { return p.limits.v_max_m_s; },
+      [](Plan& p) -> double& { return p.limits.a_max_m_s2; }};
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    for (const double bad : {double(NAN), double(INFINITY), -double(INFINITY)}) {
+      Plan plan = good;
+      numbers[i](plan) = bad;
+      EXPECT_FALSE(plan.certificate().holds()) << "number " << i << " is " << bad;
+    }
+  }
+}
+
+TEST(Certificate, DoesNotHoldForWhatIsNoTrajectoryOrNoPolytope) {
+  Random random(6);
+  const Plan good = good_plan(random);
+  for (const double duration : {0.0, -1.0}) {
+    for (auto& piece : good.trajectory.pieces) {
+      Plan plan = good;
+      plan.trajectory.pieces[std::size_t(piece.polytope)].duration_s = duration;
+      EXPECT_FALSE(plan.certificate().holds());
+      // At rest: nothing else would notice.
+      plan.trajectory.pieces.assign(1, BezierPiece());
+      plan.trajectory.pieces[0].duration_s = duration;
+      plan.start = plan.goal = {};
+      EXPECT_FALSE(plan.certificate().holds());
+    }
+  }
+  Plan plan = good;
+  plan.polytopes[1] = Polytope();
+  EXPECT_FALSE(plan.certificate().holds());
+  EXPECT_TRUE(std::isnan(plan.certificate().position_m));
+  EXPECT_EQ(plan.certificate().worst(), "position is violated by nan");
+}
+
+TEST(Certificate, ThrowsForAPolytopeThatIsNotThereAndForNoPieces) {
+  Random random(7);
+  for (const int polytope : {-1, 3, std::numeric_limits<int>::max()}) {
+    Plan plan = good_plan(random);
+    plan.trajectory.pieces[1].polytope = polytope;
+    EXPECT_THROW((void)plan.certificate(), std::out_of_range);
+  }
+  Plan plan = good_plan(random);
+  plan.trajectory.pieces.clear();
+  EXPECT_THROW((void)plan.certificate(), std::logic_error);
+}
+
+TEST(Limits, CheckNamesEveryFault) {
+  EXPECT_TRUE(Limits{}.check().ok());
+  for (const double bad : {0.0, -1.0, double(NAN), double(INFINITY)}) {
+    const auto status = Limits{.v_max_m_s = bad, .a_max_m_s2 = bad}.check();
+    EXPECT_EQ(status.code(), ErrorCode::invalid_limits);
+    EXPECT_NE(status.error().message.find("v_max_m_s is"), std::string::npos);
+    EXPECT_NE(status.error().message.find("a_max_m_s2 is"), std::string::npos);
+    EXPECT_EQ(Limits{.a_max_m_s2 = bad}.check().error().message.find("v_max"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace goshawk

@@ -1,0 +1,137 @@
+#include "goshawk/core/grid_geometry.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "goshawk/core/random.hpp"
+
+namespace goshawk {
+namespace {
+
+VoxelGrid small_grid() {
+  VoxelGrid grid;
+  grid.geometry = {Vec3(-1.0, 2.0, 0.5), 0.2, {10, 6, 4}};
+  grid.occupied = BitGrid(grid.geometry.size, true);
+  grid.known = BitGrid(grid.geometry.size, false, true);
+  return grid;
+}
+
+TEST(GridGeometry, FindsTheVoxelOfEveryPointInside) {
+  Random random(1);
+  for (int n = 0; n < 2000; ++n) {
+    const GridGeometry geometry{
+        Vec3(random.uniform(-50, 50), random.uniform(-50, 50), 0.1),
+        random.uniform(0.01, 2.0),
+        {1 + random.below(200), 1 + random.below(200), 1 + random.below(9)}};
+    const Index3 i{random.below(geometry.size.x), random.below(geometry.size.y),
+                   random.below(geometry.size.z)};
+    ASSERT_EQ(geometry.index_of(geometry.center(i)), i);
+    const Vec3 inside =
+        geometry.lower_corner(i) + geometry.resolution_m * Vec3(random.uniform(0.001, 0.999),
+                                                                random.uniform(0.001, 0.999), 0.5);
+    ASSERT_EQ(geometry.index_of(inside), i);
+    ASSERT_LT((geometry.to_grid(geometry.center(i)) - Vec3(i.x + 0.5, i.y + 0.5, i.z + 0.5)).norm(),
+              1e-9);
+  }
+}
+
+TEST(GridGeometry, GivesASharedFaceToTheUpperVoxel) {
+  const GridGeometry geometry{Vec3(-1.0, 0.0, 2.0), 0.25, {8, 8, 8}};
+  EXPECT_EQ(geometry.index_of(Vec3(-1.0, 0.0, 2.0)), (Index3{0, 0, 0}));
+  EXPECT_EQ(geometry.index_of(Vec3(-0.75, 0.25, 2.5)), (Index3{1, 1, 2}));
+  EXPECT_FALSE(geometry.index_of(geometry.upper_corner_map()));
+  EXPECT_FALSE(geometry.index_of(Vec3(1.0, 0.1, 2.1)));
+  EXPECT_FALSE(geometry.index_of(Vec3(std::nextafter(-1.0, -2.0), 0.1, 2.1)));
+}
+
+TEST(GridGeometry, FindsNoVoxelForPointsThatAreNowhere) {
+  const GridGeometry geometry{Vec3::Zero(), 0.2, {10, 10, 10}};
+  for (const double bad : {double(NAN), double(INFINITY), -double(INFINITY), 1e300, -1e300, 1e10}) {
+    for (int axis = 0; axis < 3; ++axis) {
+      Vec3 p(1.0, 1.0, 1.0);
+      p[axis] = bad;
+      EXPECT_FALSE(geometry.index_of(p)) << to_text(p);
+    }
+  }
+}
+
+TEST(GridGeometry, ChecksEveryPart) {
+  EXPECT_TRUE((GridGeometry{Vec3::Zero(), 0.2, {1, 1, 1}}.check().ok()));
+  EXPECT_EQ((GridGeometry{Vec3(0, NAN, 0), 0.2, {1, 1, 1}}.check().code()),
+            ErrorCode::invalid_input);
+  for (const double bad : {0.0, -0.2, double(NAN), double(INFINITY)}) {
+    EXPECT_EQ((GridGeometry{Vec3::Zero(), bad, {1, 1, 1}}.check().code()),
+              ErrorCode::invalid_input);
+  }
+  EXPECT_EQ((GridGeometry{Vec3::Zero(), 0.2, {1, 0, 1}}.check().code()), ErrorCode::map_empty);
+}
+
+TEST(VoxelGrid, ChecksThatItsBitsFitItsGeometry) {
+  EXPECT_TRUE(small_grid().check().ok());
+  VoxelGrid no_known = small_grid();
+  no_known.known = {};
+  EXPECT_TRUE(no_known.check().ok());
+  EXPECT_TRUE(no_known.is_known({0, 0, 0}));
+  EXPECT_FALSE(no_known.is_known({-1, 0, 0}));
+  VoxelGrid wrong = small_grid();
+  wrong.occupied = BitGrid({10, 6, 5}, true);
+  EXPECT_EQ(wrong.check().code(), ErrorCode::invalid_input);
+  wrong = small_grid();
+  wrong.known = BitGrid({9, 6, 4}, false);
+  EXPECT_EQ(wrong.check().code(), ErrorCode::invalid_input);
+  EXPECT_EQ(VoxelGrid{}.check().code(), ErrorCode::map_empty);
+}
+
+TEST(Locate, FindsAFreeVoxel) {
+  const VoxelGrid grid = small_grid();
+  const auto index = locate(grid, grid.geometry.center({3, 2, 1}), Endpoint::start);
+  ASSERT_TRUE(index.ok());
+  EXPECT_EQ(*index, (Index3{3, 2, 1}));
+}
+
+TEST(Locate, NamesTheEndAndTheReason) {
+  VoxelGrid grid = small_grid();
+  grid.occupied.set({1, 1, 1}, true);
+  grid.occupied.set({2, 1, 1}, true);
+  grid.known.set({2, 1, 1}, false);
+  const Vec3 occupied = grid.geometry.center({1, 1, 1});
+  const Vec3 unknown = grid.geometry.center({2, 1, 1});
+  const Vec3 outside(5.0, 2.1, 0.6);
+  EXPECT_EQ(locate(grid, occupied, Endpoint::start).code(), ErrorCode::start_occupied);
+  EXPECT_EQ(locate(grid, occupied, Endpoint::goal).code(), ErrorCode::goal_occupied);
+  EXPECT_EQ(locate(grid, unknown, Endpoint::start).code(), ErrorCode::start_unknown);
+  EXPECT_EQ(locate(grid, unknown, Endpoint::goal).code(), ErrorCode::goal_unknown);
+  EXPECT_EQ(locate(grid, outside, Endpoint::start).code(), ErrorCode::start_outside);
+  EXPECT_EQ(locate(grid, outside, Endpoint::goal).code(), ErrorCode::goal_outside);
+  const std::string sentence = locate(grid, outside, Endpoint::goal).error().message;
+  EXPECT_NE(sentence.find("goal (5.000, 2.100, 0.600)"), std::string::npos) << sentence;
+}
+
+TEST(Locate, CallsAVoxelOccupiedWhereUnknownCountsAsFreeOrAllIsKnown) {
+  VoxelGrid grid = small_grid();
+  grid.occupied.set({2, 1, 1}, true);
+  grid.known.set({2, 1, 1}, false);
+  const Vec3 p = grid.geometry.center({2, 1, 1});
+  grid.unknown_is_occupied = false;
+  EXPECT_EQ(locate(grid, p, Endpoint::goal).code(), ErrorCode::goal_occupied);
+  grid.unknown_is_occupied = true;
+  grid.known = {};
+  EXPECT_EQ(locate(grid, p, Endpoint::goal).code(), ErrorCode::goal_occupied);
+}
+
+TEST(Locate, RefusesWhatIsNotFiniteAndKeepsHugeNumbersReadable) {
+  const VoxelGrid grid = small_grid();
+  for (const Endpoint end : {Endpoint::start, Endpoint::goal}) {
+    EXPECT_EQ(locate(grid, Vec3(0, NAN, 0), end).code(), ErrorCode::invalid_input);
+    EXPECT_EQ(locate(grid, Vec3(0, 0, INFINITY), end).code(), ErrorCode::invalid_input);
+  }
+  const auto far = locate(grid, Vec3(1e300, 0, -1e300), Endpoint::goal);
+  EXPECT_EQ(far.code(), ErrorCode::goal_outside);
+  EXPECT_NE(far.error().message.find("(1e+300, 0, -1e+300)"), std::string::npos)
+      << far.error().message;
+}
+
+}  // namespace
+}  // namespace goshawk
