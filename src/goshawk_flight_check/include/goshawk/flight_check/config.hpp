@@ -1,0 +1,34 @@
+#pragma once
+
+#include <concepts>
+#include <type_traits>
+
+#include "goshawk/core/parameter.hpp"
+#include "goshawk/flight_check/flight_check.hpp"
+
+namespace goshawk::flight_check {
+
+/// Parameters of the second opinion.
+struct Config {
+  Body body;
+  Options options;
+};
+
+template <typename Self, typename Visitor>
+requires std::same_as<std::remove_const_t<Self>, Config>
+void describe(Self& c, Visitor&& visit) {
+  visit("radius_m", c.body.radius_m, "m", "radius of the body's cylinder, propellers included",
+        Range::positive(100.0));
+  visit("height_m", c.body.height_m, "m", "height of the body's cylinder or box",
+        Range::positive(100.0));
+  visit("is_box", c.body.is_box, "", "the body is a box instead of a cylinder", Anything{});
+  visit("length_m", c.body.length_m, "m", "length of the body's box along x",
+        Range::positive(100.0));
+  visit("width_m", c.body.width_m, "m", "width of the body's box along y", Range::positive(100.0));
+  visit("count_unknown_as_obstacle", c.options.count_unknown_as_obstacle, "",
+        "voxels never measured, and all that lies outside of the map, are obstacles", Anything{});
+  visit("tolerance_m", c.options.tolerance_m, "m",
+        "the smallest clearance is found to within this distance", Range{1e-5, 1.0});
+}
+
+}  // namespace goshawk::flight_check

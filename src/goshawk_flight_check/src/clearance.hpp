@@ -1,0 +1,48 @@
+#pragma once
+
+#include <fcl/geometry/octree/octree.h>
+#include <fcl/geometry/shape/shape_base.h>
+
+#include <limits>
+#include <memory>
+
+#include "goshawk/core/vector.hpp"
+#include "goshawk/flight_check/body.hpp"
+
+namespace goshawk::flight_check {
+
+struct Pose {
+  Vec3 position_map = Vec3::Zero();
+  Eigen::Quaterniond q_map_base = Eigen::Quaterniond::Identity();
+};
+
+struct Clearance {
+  double distance_m = 0.0;  // [m] 0 in contact, infinity where there is no obstacle
+  /// [m] nearest point of an obstacle; in contact where they meet, or the body's own position
+  /// where FCL cannot say, or where there is no obstacle
+  Vec3 obstacle_map = Vec3::Zero();
+};
+
+/// Distances between one body and the occupied leaves of one OctoMap, by FCL.
+class ClearanceMeter {
+ public:
+  /// FCL's own GJK overestimates the distance of a cylinder and a box by up to 1e-5 m; whatever
+  /// is nearer than this counts as contact.
+  static constexpr double kContact_m = 1e-4;
+
+  /// @pre inner nodes of the tree are up to date; body.check() ok
+  ClearanceMeter(std::shared_ptr<const octomap::OcTree> tree, const Body& body);
+
+  /// @param at_most_m [m] the clearance is known not to be larger: makes the search some ten
+  /// times faster. A wrong bound costs time, never a wrong answer.
+  Clearance measure(const Pose& pose,
+                    double at_most_m = std::numeric_limits<double>::infinity()) const;
+
+ private:
+  Vec3 contact_map(const Pose& pose) const;
+
+  std::shared_ptr<fcl::OcTree<double>> obstacles_;
+  std::shared_ptr<fcl::ShapeBase<double>> body_;
+};
+
+}  // namespace goshawk::flight_check
