@@ -1,0 +1,128 @@
+#include <optional>
+
+#include "goshawk/conversions/plan.hpp"
+#include "goshawk/conversions/vehicle.hpp"
+#include "goshawk/runtime/component.hpp"
+#include "goshawk/runtime/stage.hpp"
+#include "goshawk/tracker/config.hpp"
+#include "goshawk/tracker/tracker.hpp"
+
+namespace goshawk::tracker {
+namespace {
+
+using namespace goshawk::runtime;
+namespace msg = goshawk_msgs::msg;
+
+constexpr std::int64_t kComplainEvery_ns = 1'000'000'000;
+
+Tracker make_tracker(const Config& config) {
+  auto tracker = Tracker::create(config);
+  if (!tracker) throw StartupFault(tracker.error());
+  return *std::move(tracker);
+}
+
+/// committed_trajectory, odom -> command, tracking_state
+class TrackerComponent : public Component {
+ public:
+  explicit TrackerComponent(Node& node)
+      : node_(node),
+        config_(node.parameters<Config>()),
+        tracker_(make_tracker(config_)),
+        reporter_(node, config_.controller),
+        commands_(node.advertise<msg::ThrustAttitude>("command", Qos::best_effort())),
+        states_(node.advertise<msg::TrackingState>("tracking_state", Qos::best_effort())) {
+    node.subscribe<msg::CommittedTrajectory>(
+        "committed_trajectory", Qos::latched(),
+        [this](const msg::CommittedTrajectory& m, const MessageInfo& info) { on_commit(m, info); });
+    node.subscribe<nav_msgs::msg::Odometry>(
+        "odom", Qos::best_effort(),
+        [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) { on_odometry(m); });
+    reporter_.ready("tracks with " + config_.controller);
+  }
+
+ private:
+  void on_commit(const msg::CommittedTrajectory& m, const MessageInfo& info) {
+    const Timing timing{.wire_ns = wire_time_ns(m.header(), info)};
+    // Latched, it can arrive before the first odometry does: it waits, as nothing is flown yet.
+    if (tracker_.status().mode == Mode::idle) {
+      waiting_ = m;
+      return;
+    }
+    accept(m, timing);
+  }
+
+  void accept(const msg::CommittedTrajectory& m, Timing timing) {
+    const std::uint64_t id = m.trajectory().request().id();
+    auto received = conversions::from_msg(m.trajectory());
+    if (!received) return reporter_.failed(id, received.error(), timing);
+    CommittedTrajectory committed{.id = id,
+                                  .trajectory = std::move(received->trajectory),
+                                  .polytopes = std::move(received->polytopes),
+                                  .limits = received->request.limits,
+                                  .start = received->request.start,
+                                  .goal = received->request.goal,
+                                  .start_time_ns = conversions::to_ns(m.start_time()),
+                                  .yaw_rad = m.yaw()};
+    const auto [status, compute_ns] =
+        timed([&] { return tracker_.accept(std::move(committed), node_.now_ns()); });
+    timing.compute_ns = compute_ns;
+    if (!status) return reporter_.failed(id, status.error(), timing);
+    reporter_.answered(id, timing);
+  }
+
+  void on_odometry(const nav_msgs::msg::Odometry& m) {
+    const auto state = conversions::from_msg(m);
+    if (!state) return complain(state.error());
+    const std::int64_t stamp_ns = conversions::to_ns(m.header().stamp());
+    const auto command = tracker_.step(*state, stamp_ns, node_.now_ns());
+    if (!command) return complain(command.error());
+    conversions::fill_msg(*command, command_message_);
+    command_message_.header(conversions::make_header(node_.now_ns()));
+    if (auto status = commands_.publish(command_message_); !status) complain(status.error());
+    if (waiting_) {
+      accept(*waiting_, {});
+      waiting_.reset();
+    }
+    publish_state(stamp_ns);
+  }
+
+  void publish_state(std::int64_t stamp_ns) {
+    const TrackingStatus status = tracker_.status();
+    if (status.fault.code != reported_ && status.fault.code != ErrorCode::ok) {
+      reporter_.failed(status.trajectory_id, status.fault);
+    }
+    reported_ = status.fault.code;
+    msg::TrackingState m;
+    m.header(conversions::make_header(stamp_ns));
+    m.mode(std::string(to_string(status.mode)));
+    m.request_id(status.trajectory_id);
+    m.time_in_trajectory(status.progress_s);
+    m.reference(conversions::to_point(status.reference.position));
+    m.position_error(status.error_m);
+    if (auto sent = states_.publish(m); !sent) complain(sent.error());
+  }
+
+  // Bad odometry comes 250 times a second: one sentence a second tells as much.
+  void complain(const Error& error) {
+    const std::int64_t now_ns = node_.now_ns();
+    if (now_ns - complained_ns_ < kComplainEvery_ns) return;
+    complained_ns_ = now_ns;
+    reporter_.fault(error);
+  }
+
+  Node& node_;
+  Config config_;
+  Tracker tracker_;
+  StageReporter reporter_;
+  Publisher<msg::ThrustAttitude> commands_;
+  Publisher<msg::TrackingState> states_;
+  msg::ThrustAttitude command_message_;
+  std::optional<msg::CommittedTrajectory> waiting_;
+  ErrorCode reported_ = ErrorCode::ok;
+  std::int64_t complained_ns_ = 0;
+};
+
+}  // namespace
+}  // namespace goshawk::tracker
+
+GOSHAWK_REGISTER_COMPONENT(goshawk::tracker::TrackerComponent, goshawk::tracker::Config)
