@@ -1,0 +1,170 @@
+#include "goshawk/conversions/vehicle.hpp"
+#include "goshawk/navigator/navigator.hpp"
+#include "goshawk/runtime/component.hpp"
+#include "goshawk/runtime/stage.hpp"
+#include "pictures.hpp"
+
+namespace goshawk::navigator {
+namespace {
+
+using namespace goshawk::runtime;
+namespace msg = goshawk_msgs::msg;
+
+// Milliseconds since 1970: requests of a restarted navigator never repeat an id.
+std::uint64_t first_id(std::int64_t now_ns) { return std::uint64_t(now_ns / 1'000'000); }
+
+/// goal_pose, odom, trajectory, stage_report -> plan_request, committed_trajectory,
+/// navigator_state
+class NavigatorComponent : public Component {
+ public:
+  explicit NavigatorComponent(Node& node)
+      : node_(node),
+        config_(node.parameters<Config>()),
+        navigator_(config_, first_id(node.now_ns())),
+        reporter_(node, "navigator"),
+        requests_(node.advertise<msg::PlanRequest>("plan_request", Qos::reliable_last())),
+        commits_(node.advertise<msg::CommittedTrajectory>("committed_trajectory",
+                                                          Qos::latched())),
+        states_(node.advertise<msg::NavigatorState>("navigator_state", Qos::latched(20))),
+        path_lines_(node.advertise<nav_msgs::msg::Path>("path_line", Qos::best_effort())),
+        markers_(node.advertise<visualization_msgs::msg::MarkerArray>("markers",
+                                                                      Qos::best_effort())) {
+    subscribe();
+    node.every(0.02, [this] {
+      navigator_.tick(node_.now_ns());
+      carry_out();
+    });
+    publish(StateOrder{});
+    reporter_.ready("waits for a goal on goal_pose");
+  }
+
+ private:
+  void subscribe() {
+    node_.subscribe<geometry_msgs::msg::PoseStamped>(
+        "goal_pose", Qos::reliable_last(),
+        [this](const geometry_msgs::msg::PoseStamped& m, const MessageInfo&) { on_goal(m); });
+    node_.subscribe<nav_msgs::msg::Odometry>(
+        "odom", Qos::best_effort(),
+        [this](const nav_msgs::msg::Odometry& m, const MessageInfo& info) {
+          const auto state = conversions::from_msg(m);
+          if (!state) return;  // the tracker reports bad odometry
+          navigator_.on_odometry(state->position_map, state->velocity_map, info.received_ns);
+        });
+    node_.subscribe<msg::BezierTrajectory>(
+        "trajectory", Qos::reliable_last(),
+        [this](const msg::BezierTrajectory& m, const MessageInfo& info) {
+          on_trajectory(m, info);
+        });
+    node_.subscribe<msg::StageReport>(
+        "stage_report", Qos::reliable_last(50),
+        [this](const msg::StageReport& m, const MessageInfo&) { on_report(m); });
+  }
+
+  void on_goal(const geometry_msgs::msg::PoseStamped& m) {
+    Status status = conversions::check_frame(m.header(), conversions::kMapFrame, "a goal");
+    if (status) {
+      const auto& q = m.pose().orientation();
+      const Eigen::Quaterniond rotation(q.w(), q.x(), q.y(), q.z());
+      status = navigator_.on_goal(conversions::from_msg(m.pose().position()),
+                                  conversions::yaw_of(rotation), node_.now_ns());
+    }
+    if (!status) {
+      reporter_.fault(status.error());
+      // Whoever waits for the answer to this goal reads navigator_state.
+      if (navigator_.state() != State::flying && navigator_.state() != State::planning) {
+        publish(StateOrder{State::failed, 0, Vec3::Zero(), status.error()});
+      }
+    }
+    carry_out();
+  }
+
+  void on_trajectory(const msg::BezierTrajectory& m, const MessageInfo& info) {
+    auto received = conversions::from_msg(m);
+    if (!received) {
+      navigator_.on_report(m.request().id(), "trajectory_optimizer", received.error(),
+                           info.received_ns);
+      reporter_.failed(m.request().id(), received.error());
+    } else {
+      wire_ns_ = wire_time_ns(m.header(), info);
+      candidate_ = m;
+      candidate_received_ = *received;
+      navigator_.on_trajectory(m.request().id(), std::move(received->trajectory),
+                               info.received_ns);
+    }
+    carry_out();
+  }
+
+  void on_report(const msg::StageReport& m) {
+    Error outcome{ErrorCode::invalid_input, m.message()};
+    for (const ErrorCode code : all_error_codes()) {
+      if (to_string(code) == m.code()) outcome.code = code;
+    }
+    navigator_.on_report(m.request_id(), m.stage(), outcome, node_.now_ns());
+    carry_out();
+  }
+
+  void carry_out() {
+    for (const Order& order : navigator_.take_orders()) {
+      std::visit([this](const auto& o) { publish(o); }, order);
+    }
+  }
+
+  void publish(const PlanOrder& order) {
+    const conversions::PlanRequest request{.id = order.id,
+                                           .stamp_ns = order.stamp_ns,
+                                           .start = order.start,
+                                           .goal = order.goal,
+                                           .goal_yaw_rad = order.yaw_rad,
+                                           .limits = config_.limits(),
+                                           .deadline_s = order.deadline_s};
+    auto m = conversions::to_msg(request);
+    m.header().stamp(conversions::to_stamp(node_.now_ns()));
+    send(requests_, m);
+  }
+
+  void publish(const CommitOrder& order) {
+    msg::CommittedTrajectory m;
+    m.header(conversions::make_header(node_.now_ns()));
+    m.start_time(conversions::to_stamp(order.start_time_ns));
+    m.yaw(order.yaw_rad);
+    m.trajectory(candidate_);
+    send(commits_, m);
+    reporter_.answered(order.id, {.wire_ns = wire_ns_, .compute_ns = 0});
+    send(path_lines_, path_line(candidate_received_.trajectory, order.start_time_ns, 0.05));
+    send(markers_, corridor_markers(candidate_received_, order.start_time_ns));
+  }
+
+  void publish(const StateOrder& order) {
+    msg::NavigatorState m;
+    m.header(conversions::make_header(node_.now_ns()));
+    m.state(std::string(to_string(order.state)));
+    m.request_id(order.id);
+    m.goal(conversions::to_point(order.goal_map));
+    m.code(std::string(to_string(order.reason.code)));
+    m.message(order.reason.message);
+    send(states_, m);
+  }
+
+  template <typename Message>
+  void send(const Publisher<Message>& publisher, const Message& message) {
+    if (auto status = publisher.publish(message); !status) reporter_.fault(status.error());
+  }
+
+  Node& node_;
+  Config config_;
+  Navigator navigator_;
+  StageReporter reporter_;
+  Publisher<msg::PlanRequest> requests_;
+  Publisher<msg::CommittedTrajectory> commits_;
+  Publisher<msg::NavigatorState> states_;
+  Publisher<nav_msgs::msg::Path> path_lines_;
+  Publisher<visualization_msgs::msg::MarkerArray> markers_;
+  msg::BezierTrajectory candidate_;  // the newest certified one, to commit
+  conversions::ReceivedTrajectory candidate_received_;
+  std::int64_t wire_ns_ = 0;
+};
+
+}  // namespace
+}  // namespace goshawk::navigator
+
+GOSHAWK_REGISTER_COMPONENT(goshawk::navigator::NavigatorComponent, goshawk::navigator::Config)

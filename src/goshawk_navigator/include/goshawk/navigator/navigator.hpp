@@ -1,0 +1,113 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "goshawk/core/trajectory.hpp"
+#include "goshawk/navigator/config.hpp"
+
+namespace goshawk::navigator {
+
+enum class State { idle, planning, flying, arrived, failed };
+std::string_view to_string(State state);
+
+/// What the navigator wants done; the component turns it into messages.
+struct PlanOrder {
+  std::uint64_t id = 0;
+  std::int64_t stamp_ns = 0;
+  FlatState start;
+  FlatState goal;
+  double yaw_rad = 0.0;
+  double deadline_s = 0.0;
+};
+struct CommitOrder {
+  std::uint64_t id = 0;
+  std::int64_t start_time_ns = 0;
+  double yaw_rad = 0.0;
+};
+struct StateOrder {
+  State state = State::idle;
+  std::uint64_t id = 0;
+  Vec3 goal_map = Vec3::Zero();
+  Error reason{ErrorCode::ok, ""};
+};
+using Order = std::variant<PlanOrder, CommitOrder, StateOrder>;
+
+/// From goals to committed trajectories. Knows no middleware and no clock: every event brings the
+/// time, and leaves orders to take.
+///
+/// At rest it plans from where the vehicle hovers. In flight it plans from the state that the
+/// present trajectory will have replan_lead_s from now, and commits only what comes before that
+/// moment; the present trajectory ends at rest in any case, so a plan that fails or comes late
+/// never endangers the vehicle. A request without an answer is asked again, then given up with the
+/// name of the stage that was silent.
+class Navigator {
+ public:
+  /// @param first_id number of the first request, above 0: unique over restarts
+  Navigator(const Config& config, std::uint64_t first_id);
+
+  /// @param yaw_rad heading at the goal, map x to y @return invalid_input where not finite
+  Status on_goal(const Vec3& goal_map, double yaw_rad, std::int64_t now_ns);
+  void on_odometry(const Vec3& position_map, const Vec3& velocity_map, std::int64_t now_ns);
+  /// A certified trajectory for request `id`. Others than the open request's are ignored.
+  void on_trajectory(std::uint64_t id, Trajectory trajectory, std::int64_t now_ns);
+  /// A stage has answered a request: with ok, or with why not.
+  void on_report(std::uint64_t id, std::string_view stage, const Error& outcome,
+                 std::int64_t now_ns);
+  /// Regularly, some 50 times a second: timeouts and arrival.
+  void tick(std::int64_t now_ns);
+
+  std::vector<Order> take_orders() { return std::exchange(orders_, {}); }
+  State state() const { return state_; }
+
+ private:
+  struct Goal {
+    Vec3 position_map = Vec3::Zero();
+    double yaw_rad = 0.0;
+  };
+  struct Open {  // the request that waits for its answer
+    std::uint64_t id = 0;
+    std::int64_t asked_ns = 0;
+    std::optional<std::int64_t> switch_ns;  // moving start: when the new trajectory must begin
+    std::string last_stage;                 // that answered ok
+  };
+  struct Flight {
+    std::uint64_t id = 0;
+    Trajectory trajectory;
+    std::int64_t start_ns = 0;
+    std::int64_t end_ns = 0;
+    Goal goal;
+  };
+
+  void plan(std::int64_t now_ns);
+  void ask(const FlatState& start, std::optional<std::int64_t> switch_ns, std::int64_t now_ns);
+  void plan_again(const Error& reason, std::int64_t now_ns);
+  void give_up(const Error& reason);
+  void tracker_failed(const Error& reason, std::int64_t now_ns);
+  void check_arrival(std::int64_t now_ns);
+  void check_silence(std::int64_t now_ns);
+  bool at_rest() const;
+  bool odometry_is_fresh(std::int64_t now_ns) const;
+  void enter(State state, Error reason = {ErrorCode::ok, ""});
+
+  Config config_;
+  std::uint64_t next_id_;
+  State state_ = State::idle;
+  Goal goal_;
+  bool goal_open_ = false;  // a goal that no committed trajectory leads to yet
+  int attempts_ = 0;
+  std::int64_t retry_ns_ = 0;     // not before this
+  std::int64_t wait_begin_ns_ = 0;  // since when a plan waits for the vehicle to come to rest
+  double lead_s_;
+  std::optional<Open> open_;
+  std::optional<Flight> flight_;
+  Vec3 position_map_ = Vec3::Zero();
+  Vec3 velocity_map_ = Vec3::Zero();
+  std::optional<std::int64_t> odometry_ns_;
+  std::vector<Order> orders_;
+};
+
+}  // namespace goshawk::navigator
