@@ -99,7 +99,9 @@ Result<BitGrid> inflate(const BitGrid& occupied, double radius_m, double resolut
   if (radius_m == 0.0) return occupied;
   const Index3 size = occupied.size();
   const std::size_t words = occupied.words_per_row();
-  const auto element = structuring_element(radius_m / resolution_m, size);
+  // A radius beyond the grid's far corner changes nothing more, and would take forever.
+  const double farthest = double(size.x) + size.y + size.z;
+  const auto element = structuring_element(std::min(radius_m / resolution_m, farthest), size);
   // Only real bits may be a source: padding stands for the outside, which does not grow.
   const Word last_mask = (size.x & 63) == 0 ? ~Word{0} : (Word{1} << (size.x & 63)) - 1;
 
