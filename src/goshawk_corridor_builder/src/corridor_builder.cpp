@@ -14,6 +14,7 @@ namespace goshawk::corridor_builder {
 namespace {
 
 constexpr double kLeastOverlap_m = 1e-6;
+constexpr double kSpare = 0.499;        // [voxel edges] half a voxel, less what planes keep away
 constexpr double kMostRounding = 1e-5;  // [voxel edges] beyond it planes are not worth the name
 
 std::string segment_text(std::span<const Vec3> path, int k) {
@@ -65,6 +66,7 @@ class CorridorBuilder::Impl {
 
  private:
   Status check(const VoxelGrid& grid, std::span<const Vec3> path) const;
+  Status check_room(std::span<const Vec3> path) const;
   void split(const VoxelGrid& grid, std::span<const Vec3> path);
   std::optional<Blockage> wrap(const VoxelGrid& grid);
   std::size_t covered_until(const Polytope& polytope, std::size_t end, double spare_m) const;
@@ -95,13 +97,7 @@ Result<Corridor> CorridorBuilder::Impl::build(const VoxelGrid& grid, std::span<c
   if (blockage) return blocked(grid, path, *blockage);
   measure_overlaps(chain_.polytopes, overlaps_);
   if (config.drop_covered) drop_covered(grid.geometry.resolution_m, chain_, overlaps_);
-  for (std::size_t k = 0; k < overlaps_.size(); ++k) {
-    if (overlaps_[k].radius_m > kLeastOverlap_m) continue;
-    return fail(ErrorCode::corridor_disjoint,
-                "polytopes " + std::to_string(k) + " and " + std::to_string(k + 1) +
-                    " share no ball at the joint " + to_text(chain_.joints_map[k + 1]) +
-                    ": the path squeezes between obstacles that touch; search without squeezing");
-  }
+  if (auto status = check_room(path); !status) return status.error();
   settle_joints(config.joint_clearance_voxels * grid.geometry.resolution_m, overlaps_, chain_);
   return Corridor{chain_.joints_map, chain_.polytopes, overlaps_};
 }
@@ -125,6 +121,21 @@ Status CorridorBuilder::Impl::check(const VoxelGrid& grid, std::span<const Vec3>
                 segment_text(path, int(i == 0 ? 0 : i - 1)) + " leaves the map, which spans " +
                     to_text(grid.geometry.origin_map) + " to " +
                     to_text(grid.geometry.upper_corner_map()));
+  }
+  return success();
+}
+
+// Obstacles that touch each other leave a path between them, but no room to fly.
+Status CorridorBuilder::Impl::check_room(std::span<const Vec3> path) const {
+  const char* squeezes = ": the path squeezes between obstacles that touch; search it without";
+  if (overlaps_.empty() && !(chebyshev_ball(chain_.polytopes[0]).radius_m > kLeastOverlap_m)) {
+    return fail(ErrorCode::segment_blocked, segment_text(path, 0) + " has no room" + squeezes);
+  }
+  for (std::size_t k = 0; k < overlaps_.size(); ++k) {
+    if (overlaps_[k].radius_m > kLeastOverlap_m) continue;
+    return fail(ErrorCode::corridor_disjoint,
+                "polytopes " + std::to_string(k) + " and " + std::to_string(k + 1) +
+                    " share no ball near " + to_text(chain_.joints_map[k + 1]) + squeezes);
   }
   return success();
 }
@@ -161,7 +172,7 @@ std::optional<Blockage> CorridorBuilder::Impl::wrap(const VoxelGrid& grid) {
                                             margins_, polytope);
     if (at) return Blockage{points_[i].segment, *at};
     i = config.drop_covered
-            ? covered_until(polytope, i + 1, 0.5 * grid.geometry.resolution_m)
+            ? covered_until(polytope, i + 1, kSpare * grid.geometry.resolution_m)
             : i + 1;
     chain_.joints_map.push_back(points_[i].p_map);
     chain_.polytopes.push_back(std::move(polytope));

@@ -5,7 +5,7 @@
 namespace goshawk::corridor_builder {
 namespace {
 
-constexpr double kHalfVoxel = 0.5;
+constexpr double kHalfVoxel = 0.499;  // less what planes keep away from obstacles
 constexpr double kNearlyAsGood = 0.7;
 
 // How far from `from` (0) to `center` (1) a point has at least `clearance` to every face: slacks
