@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 #include <vector>
 
 #include "box_growth.hpp"
@@ -99,7 +100,8 @@ Result<Corridor> CorridorBuilder::Impl::build(const VoxelGrid& grid, std::span<c
   if (config.drop_covered) drop_covered(grid.geometry.resolution_m, chain_, overlaps_);
   if (auto status = check_room(path); !status) return status.error();
   settle_joints(config.joint_clearance_voxels * grid.geometry.resolution_m, overlaps_, chain_);
-  return Corridor{chain_.joints_map, chain_.polytopes, overlaps_};
+  // The answer is moved out: nothing else is allocated once the working memory has grown.
+  return Corridor{std::move(chain_.joints_map), std::move(chain_.polytopes), std::move(overlaps_)};
 }
 
 Status CorridorBuilder::Impl::check(const VoxelGrid& grid, std::span<const Vec3> path) const {
