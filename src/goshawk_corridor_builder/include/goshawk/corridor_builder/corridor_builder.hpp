@@ -1,0 +1,53 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string_view>
+
+#include "goshawk/core/grid_geometry.hpp"
+#include "goshawk/core/polytope.hpp"
+#include "goshawk/core/result.hpp"
+#include "goshawk/corridor_builder/config.hpp"
+
+namespace goshawk::corridor_builder {
+
+/// Wraps a polyline in convex polytopes that no obstacle cuts into (thesis, section "Safe Flight
+/// Corridor Generation"; obstacles are whole cubes, not points: docs/corridors.md).
+///
+/// Promises for every corridor it returns:
+/// - the open interior of a polytope meets no occupied voxel's cube and does not leave the map;
+///   planes keep at least 1e-7 voxel edges away, or, where the path itself touches an obstacle's
+///   face, are rounded to the free side;
+/// - start and goal are the path's ends, to the bit, and lie in the first and last polytope (up to
+///   1e-9 voxel edges where they touch a face); the path between waypoint k and k + 1 of the
+///   result lies in polytope k;
+/// - consecutive polytopes share a ball of more than 1e-6 m, which is reported.
+///
+/// Not thread-safe: a builder keeps its working memory from call to call. The same input gives the
+/// same bits, whatever was built before.
+class CorridorBuilder {
+ public:
+  /// @return invalid_parameter, with every fault of the config in one sentence
+  static Result<CorridorBuilder> create(const Config& config);
+
+  CorridorBuilder(CorridorBuilder&&) noexcept;
+  CorridorBuilder& operator=(CorridorBuilder&&) noexcept;
+  ~CorridorBuilder();
+
+  /// @param grid obstacles grown by the vehicle already; outside is blocked
+  /// @param waypoints_map [m] n >= 2 points, frame `map`; equal neighbours are allowed
+  /// @return invalid_input (not finite, fewer than two points, a grid that disagrees with itself),
+  ///   segment_blocked (a segment meets an occupied cube's interior or leaves the map; names the
+  ///   segment and the place), corridor_disjoint (two polytopes share no ball)
+  Result<Corridor> build(const VoxelGrid& grid, std::span<const Vec3> waypoints_map);
+
+  /// @return the generator's name, for reports: "ellipsoid" or "box"
+  std::string_view implementation() const;
+
+ private:
+  class Impl;
+  explicit CorridorBuilder(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace goshawk::corridor_builder

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <span>
+
+#include "ellipsoid.hpp"
+#include "separating_plane.hpp"
+
+namespace goshawk::corridor_builder {
+
+/// Nearly the largest ellipsoid inside planes: maximise log det L subject to |L' n| + n . c <= d
+/// for every plane (Boyd and Vandenberghe, Convex Optimization, section 8.4.2), by a fixed number
+/// of damped Newton steps on the barrier of these second-order cones in the nine unknowns (c, L).
+/// The steps stop short of the optimum: the shape is what matters, and it is settled by then.
+///
+/// @param inside an ellipsoid inside the planes; shrunk by halves until it truly is
+/// @return false where not even a small part of it is (its centre lies on or behind a plane)
+bool grow_inscribed_ellipsoid(std::span<const Plane> planes, const Ellipsoid& inside,
+                              Ellipsoid& grown);
+
+}  // namespace goshawk::corridor_builder

@@ -1,0 +1,283 @@
+#include "goshawk/corridor_builder/corridor_builder.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+
+#include "support/corridor_checker.hpp"
+#include "support/worlds.hpp"
+
+namespace goshawk::corridor_builder {
+namespace {
+
+using support::faults_of;
+using ::testing::HasSubstr;
+
+CorridorBuilder builder_of(const Config& config) {
+  return std::move(CorridorBuilder::create(config)).value();
+}
+
+struct Tally {
+  int segments = 0;
+  int corridors = 0;
+  int disjoint = 0;
+};
+
+// Corridors around random free paths of one world, each proven by the independent checker.
+void prove(CorridorBuilder& builder, const VoxelGrid& grid, int paths, Random& random,
+           Tally& tally) {
+  for (int k = 0; k < paths; ++k) {
+    const auto path =
+        support::random_free_path(grid, 1 + random.below(4), random.uniform(0.3, 6.0), random);
+    if (path.empty()) continue;
+    const auto corridor = builder.build(grid, path);
+    if (!corridor.ok()) {
+      ASSERT_EQ(corridor.code(), ErrorCode::corridor_disjoint) << corridor.error().message;
+      ++tally.disjoint;
+      continue;
+    }
+    ++tally.corridors;
+    tally.segments += int(path.size()) - 1;
+    ASSERT_EQ(faults_of(*corridor, grid, path), "") << "path " << k;
+  }
+}
+
+VoxelGrid random_world(int kind, Random& random) {
+  const double resolution_m = random.chance(0.5) ? 0.2 : random.uniform(0.05, 0.5);
+  const Vec3 origin(random.uniform(-50, 50), random.uniform(-50, 50), random.uniform(-5, 5));
+  const Index3 size{8 + random.below(60), 8 + random.below(40), 4 + random.below(20)};
+  VoxelGrid grid = support::empty_world(size, resolution_m, origin);
+  if (kind == 0) support::add_noise(grid, random.uniform(0.0, 0.3), random);
+  if (kind == 1) {
+    grid = support::boxes_and_pillars(size, resolution_m, random.uniform(0.1, 0.5), resolution_m,
+                                      random.next());
+  }
+  if (kind == 2) {
+    grid = support::forest(size, resolution_m, 1 + random.below(12), resolution_m, random.next());
+  }
+  grid.geometry.origin_map = origin;
+  return grid;
+}
+
+void prove_many(const Config& config, std::uint64_t seed, int worlds, int paths, Tally& tally) {
+  CorridorBuilder builder = builder_of(config);
+  Random random(seed);
+  for (int w = 0; w < worlds; ++w) {
+    const VoxelGrid grid = random_world(w % 3, random);
+    ASSERT_NO_FATAL_FAILURE(prove(builder, grid, paths, random, tally)) << "world " << w;
+  }
+}
+
+TEST(CorridorBuilder, NeverCutsIntoAnObstacleOnTenThousandRandomSegments) {
+  Tally tally;
+  prove_many(Config{}, 1, 300, 20, tally);
+  EXPECT_GE(tally.segments, 10000);
+  EXPECT_LE(tally.disjoint, tally.corridors / 100);
+  RecordProperty("segments", tally.segments);
+}
+
+TEST(CorridorBuilder, NeverCutsIntoAnObstacleWithOtherSettings) {
+  Tally tally;
+  prove_many({.local_box_m = 1.0, .growth_passes = 0}, 2, 45, 10, tally);
+  prove_many({.growth_passes = 3, .drop_covered = false}, 3, 45, 10, tally);
+  prove_many({.max_segment_m = 0.7, .max_faces = 10}, 4, 45, 10, tally);
+  EXPECT_GE(tally.segments, 1500);
+}
+
+TEST(CorridorBuilder, BoxesNeverCutIntoAnObstacle) {
+  Tally tally;
+  prove_many({.generator = "box"}, 5, 150, 15, tally);
+  EXPECT_GE(tally.segments, 3000);
+  EXPECT_EQ(tally.disjoint, 0);
+}
+
+
+constexpr double kInf = std::numeric_limits<double>::infinity();
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+VoxelGrid world_with_wall() {  // x = 2.0 to 2.2 is blocked, all of y, z below 1.0
+  VoxelGrid grid = support::empty_world({20, 10, 10}, 0.2);
+  support::fill(grid, {10, 0, 0}, {11, 10, 5});
+  return grid;
+}
+
+void expect_error(const Result<Corridor>& result, ErrorCode code, const char* words) {
+  ASSERT_FALSE(result.ok());
+  EXPECT_EQ(result.code(), code) << result.error().message;
+  EXPECT_THAT(result.error().message, HasSubstr(words));
+}
+
+class BothGenerators : public ::testing::TestWithParam<const char*> {
+ protected:
+  CorridorBuilder builder_ = builder_of({.generator = GetParam()});
+};
+
+INSTANTIATE_TEST_SUITE_P(Corridor, BothGenerators, ::testing::Values("ellipsoid", "box"));
+
+TEST_P(BothGenerators, SaysItsName) { EXPECT_EQ(builder_.implementation(), GetParam()); }
+
+TEST_P(BothGenerators, RefusesAPathThatIsNoPath) {
+  const VoxelGrid grid = world_with_wall();
+  const Vec3 a(0.5, 0.5, 0.5);
+  expect_error(builder_.build(grid, {}), ErrorCode::invalid_input, "0 points");
+  expect_error(builder_.build(grid, std::vector{a}), ErrorCode::invalid_input, "1 points");
+  for (const double bad : {kNaN, kInf, -kInf}) {
+    expect_error(builder_.build(grid, std::vector{a, Vec3(bad, 1, 1)}), ErrorCode::invalid_input,
+                 "waypoint 1");
+  }
+  VoxelGrid torn = grid;
+  torn.geometry.size.x = 7;
+  EXPECT_FALSE(builder_.build(torn, std::vector{a, a}).ok());
+  EXPECT_FALSE(builder_.build(VoxelGrid{}, std::vector{a, a}).ok());
+}
+
+TEST_P(BothGenerators, NamesTheSegmentThatIsBlockedOrLeavesTheMap) {
+  const VoxelGrid grid = world_with_wall();
+  const Vec3 a(0.5, 0.5, 0.5), b(1.5, 0.5, 0.5), behind(3.0, 0.5, 0.5);
+  expect_error(builder_.build(grid, std::vector{a, b, behind}), ErrorCode::segment_blocked,
+               "segment 1");
+  expect_error(builder_.build(grid, std::vector{Vec3(2.1, 0.5, 0.5), a}),
+               ErrorCode::segment_blocked, "segment 0");
+  expect_error(builder_.build(grid, std::vector{a, b, Vec3(0.5, 0.5, 2.5)}),
+               ErrorCode::segment_blocked, "segment 1");
+  expect_error(builder_.build(grid, std::vector{Vec3(1e300, 0, 0), a}),
+               ErrorCode::segment_blocked, "leaves the map");
+}
+
+TEST_P(BothGenerators, WrapsAPathOfNoLength) {
+  const VoxelGrid grid = world_with_wall();
+  for (const Vec3& p : {Vec3(1.1, 1.1, 1.1), Vec3(2.0, 0.9, 0.5), Vec3(0.0, 0.0, 0.0)}) {
+    const std::vector<Vec3> path{p, p, p};
+    const auto corridor = builder_.build(grid, path);
+    ASSERT_TRUE(corridor.ok()) << corridor.error().message;
+    EXPECT_EQ(corridor->polytopes.size(), 1U);
+    EXPECT_EQ(faults_of(*corridor, grid, path), "");
+    EXPECT_GT(chebyshev_ball(corridor->polytopes[0]).radius_m, 0.1);
+  }
+}
+
+TEST_P(BothGenerators, StartAndGoalMayLieOnFacesEdgesAndCornersOfObstaclesAndOfTheMap) {
+  const VoxelGrid grid = world_with_wall();
+  const std::vector<std::vector<Vec3>> paths{
+      {{2.0, 1.0, 0.5}, {0.5, 1.0, 0.5}},              // begins on the wall's face
+      {{0.5, 1.0, 0.5}, {2.0, 1.0, 0.5}},              // ends there
+      {{2.0, 1.0, 1.0}, {0.5, 1.0, 0.5}},              // begins on its upper edge
+      {{1.0, 0.0, 0.5}, {1.0, 2.0, 0.5}},              // from map face to map face
+      {{0.0, 0.0, 0.0}, {4.0, 2.0, 2.0}},              // from corner to corner, over the wall's edge
+      {{0.0, 0.0, 2.0}, {4.0, 0.0, 2.0}},              // along an edge of the map
+      {{0.1, 1.0, 0.5}, {2.0, 1.0, 1.5}, {3.9, 1.0, 0.5}},
+  };
+  for (const auto& path : paths) {
+    const auto corridor = builder_.build(grid, path);
+    ASSERT_TRUE(corridor.ok()) << to_text(path[0]) << " " << corridor.error().message;
+    EXPECT_EQ(faults_of(*corridor, grid, path), "") << to_text(path[0]);
+  }
+}
+
+TEST(CorridorBuilder, FollowsAPathAlongAnObstaclesFace) {
+  const VoxelGrid grid = world_with_wall();
+  const std::vector<Vec3> path{{2.0, 0.1, 0.5}, {2.0, 1.9, 0.5}};
+  const auto corridor = builder_of({}).build(grid, path);
+  ASSERT_TRUE(corridor.ok()) << corridor.error().message;
+  EXPECT_EQ(faults_of(*corridor, grid, path), "");
+}
+
+TEST_P(BothGenerators, RefusesAGapOfNoWidth) {
+  VoxelGrid grid = support::empty_world({4, 4, 1}, 1.0);
+  support::fill(grid, {0, 2, 0}, {2, 4, 1});
+  support::fill(grid, {2, 0, 0}, {4, 2, 1});
+  expect_error(builder_.build(grid, std::vector<Vec3>{{0.5, 0.5, 0.5}, {3.5, 3.5, 0.5}}),
+               ErrorCode::segment_blocked, "segment 0");
+  const auto bent = builder_.build(
+      grid, std::vector<Vec3>{{0.5, 1.0, 0.5}, {1.5, 1.5, 0.5}, {2.5, 2.5, 0.5}, {3.5, 2.5, 0.5}});
+  EXPECT_FALSE(bent.ok());
+}
+
+TEST(CorridorBuilder, FillsAnEmptyWorldWithOnePolytope) {
+  const VoxelGrid grid = support::empty_world({10, 10, 10}, 0.2);
+  const std::vector<Vec3> path{{0.1, 0.1, 0.1}, {1.9, 0.1, 0.1}, {1.9, 1.9, 1.9}};
+  const auto corridor = builder_of({}).build(grid, path);
+  ASSERT_TRUE(corridor.ok()) << corridor.error().message;
+  ASSERT_EQ(corridor->polytopes.size(), 1U);
+  EXPECT_EQ(corridor->polytopes[0].faces(), 6);
+  EXPECT_NEAR(support::volume_of(corridor->polytopes[0]), 8.0, 1e-5);
+}
+
+TEST(CorridorBuilder, ConfigFaultsAreAllListedAtOnce) {
+  const auto made = CorridorBuilder::create(
+      {.generator = "magic", .local_box_m = kNaN, .max_segment_m = 0.0, .growth_passes = -1});
+  ASSERT_FALSE(made.ok());
+  EXPECT_EQ(made.code(), ErrorCode::invalid_parameter);
+  for (const char* name : {"generator", "local_box_m", "max_segment_m", "growth_passes"}) {
+    EXPECT_THAT(made.error().message, HasSubstr(name));
+  }
+}
+
+bool same_bits(const Corridor& a, const Corridor& b) {
+  if (a.polytopes.size() != b.polytopes.size() || a.waypoints_map != b.waypoints_map) return false;
+  for (std::size_t k = 0; k < a.polytopes.size(); ++k) {
+    const Polytope& p = a.polytopes[k];
+    const Polytope& q = b.polytopes[k];
+    if (p.faces() != q.faces() || p.A != q.A || p.b != q.b) return false;
+  }
+  for (std::size_t k = 0; k < a.overlaps.size(); ++k) {
+    if (a.overlaps[k].center_map != b.overlaps[k].center_map) return false;
+    if (a.overlaps[k].radius_m != b.overlaps[k].radius_m) return false;
+  }
+  return true;
+}
+
+TEST_P(BothGenerators, AnswersTheSameBitsWhateverWasBuiltBefore) {
+  Random random(11);
+  const VoxelGrid grid = support::boxes_and_pillars({30, 40, 20}, 0.2, 0.3, 0.2, 3);
+  for (int k = 0; k < 30; ++k) {
+    const auto path = support::random_free_path(grid, 3, 3.0, random);
+    if (path.empty()) continue;
+    CorridorBuilder fresh = builder_of({.generator = GetParam()});
+    const auto a = builder_.build(grid, path);
+    const auto b = fresh.build(grid, path);
+    ASSERT_TRUE(a.ok() && b.ok());
+    EXPECT_TRUE(same_bits(*a, *b));
+  }
+}
+
+// The world, cut out of a larger one and moved in it by whole voxels of a resolution that is a
+// power of two, is the same problem to the bit but for the last rounding of the offsets.
+TEST_P(BothGenerators, MovesWithTheWorldByWholeVoxels) {
+  Random random(12);
+  VoxelGrid grid = support::boxes_and_pillars({40, 30, 16}, 0.25, 0.3, 0.25, 5);
+  VoxelGrid moved = grid;
+  const Vec3 shift(100 * 0.25, -37 * 0.25, 8 * 0.25);
+  moved.geometry.origin_map += shift;
+  for (int k = 0; k < 30; ++k) {
+    const auto path = support::random_free_path(grid, 3, 3.0, random);
+    if (path.empty()) continue;
+    std::vector<Vec3> there;
+    for (const Vec3& p : path) there.push_back(p + shift);
+    const auto a = builder_.build(grid, path);
+    const auto b = builder_.build(moved, there);
+    ASSERT_TRUE(a.ok() && b.ok());
+    ASSERT_EQ(a->polytopes.size(), b->polytopes.size());
+    for (std::size_t i = 0; i < a->polytopes.size(); ++i) {
+      const Polytope& p = a->polytopes[i];
+      const Polytope& q = b->polytopes[i];
+      ASSERT_EQ(p.faces(), q.faces());
+      EXPECT_TRUE((p.A - q.A).cwiseAbs().maxCoeff() < 1e-6);
+      EXPECT_TRUE((p.b + p.A * shift - q.b).cwiseAbs().maxCoeff() < 1e-5);
+    }
+  }
+}
+
+TEST(CorridorBuilder, PolytopesAndOverlapsAreLargeWhereThereIsRoom) {
+  const VoxelGrid grid = world_with_wall();  // free above the wall
+  const std::vector<Vec3> path{{1.1, 1.1, 0.5}, {1.5, 1.1, 1.5}, {2.7, 1.1, 1.5}, {3.1, 1.1, 0.5}};
+  const auto corridor = builder_of({}).build(grid, path);
+  ASSERT_TRUE(corridor.ok()) << corridor.error().message;
+  EXPECT_EQ(faults_of(*corridor, grid, path), "");
+  EXPECT_LE(corridor->polytopes.size(), 3U);
+  EXPECT_GT(corridor->min_overlap_radius_m(), 0.3);
+}
+
+}  // namespace
+}  // namespace goshawk::corridor_builder

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "goshawk/core/grid_geometry.hpp"
+#include "goshawk/core/polytope.hpp"
+
+namespace goshawk::corridor_builder::support {
+
+/// The corners of {p : A p <= b}, by trying every three planes; shares no code with the builder.
+std::vector<Vec3> vertices_of(const Polytope& polytope);
+
+/// Do the open interiors of a polytope and of a cube meet? All corners of what they have in
+/// common are found; where it has an interior, their mean lies in it.
+bool interiors_meet(const Polytope& polytope, const Vec3& lower, const Vec3& upper);
+
+/// The volume, by integrating over a fine grid of lines along x; within a few per cent.
+double volume_of(const Polytope& polytope);
+
+/// Everything that a corridor promises, checked from its numbers alone.
+/// @return empty, or what is wrong
+std::string faults_of(const Corridor& corridor, const VoxelGrid& grid,
+                      std::span<const Vec3> path_map);
+
+}  // namespace goshawk::corridor_builder::support
