@@ -1,0 +1,62 @@
+#pragma once
+
+#include <vector>
+
+#include "goshawk/core/polytope.hpp"
+#include "goshawk/core/trajectory.hpp"
+#include "goshawk/trajectory_optimizer/config.hpp"
+#include "goshawk/trajectory_optimizer/spline_problem.hpp"
+
+namespace goshawk::trajectory_optimizer {
+
+/// What is asked: a view of the caller's data.
+struct Request {
+  const Corridor& corridor;
+  const FlatState& start;
+  const FlatState& goal;
+  const Limits& limits;
+
+  /// From rest to rest, where a longer duration of the same shape is always feasible.
+  bool rests() const;
+};
+
+/// Pieces with durations and a guess of the joints between them: what a solve begins with.
+struct Plan {
+  std::vector<double> durations_s;  // m
+  std::vector<int> polytopes;       // m: where each piece lives
+  std::vector<FlatState> joints;    // m + 1
+  double reference_s = 0.0;         // [s] duration of the trapezoid, above zero
+  bool stays = false;               // no way to go: any duration will do
+
+  double duration_s() const;
+};
+
+/// Cuts the trapezoid over the corridor's waypoints into pieces of at most config.piece_duration_s,
+/// shorter at a moving start, so that its hull fits.
+Plan cut_trapezoid(const Request& request, const Config& config);
+/// One piece a segment, each as long as from rest to rest (thesis, time allocation, corrected).
+Plan thesis_plan(const Request& request);
+
+/// The units of a SplineProblem: positions from `origin_map` in `length_m`, times in `time_s`,
+/// so chosen that v_max and a mean piece are 1.
+struct Units {
+  Vec3 origin_map = Vec3::Zero();
+  double length_m = 1.0;
+  double time_s = 1.0;
+};
+
+/// [m/s^3] the jerk that builds up a_max in the time of a full ramp of the trapezoid: the yardstick
+/// for smoothness.
+double natural_jerk(const Plan& plan, const Limits& limits);
+
+/// @param scale whether the time scale is an unknown; a moving end is then linearised at eta = 1
+/// @return false where a control point that the ends alone decide leaves its polytope
+bool make_problem(const Request& request, const Plan& plan, bool scale, double time_weight,
+                  SplineProblem& problem, Units& units);
+
+/// The joints of a solution in SI units, the ends exactly as asked, durations times kappa.
+void take_solution(const Request& request, const std::vector<Joint>& joints, const Units& units,
+                   double kappa, Plan& plan);
+Trajectory make_trajectory(const Plan& plan);
+
+}  // namespace goshawk::trajectory_optimizer

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <vector>
+
+#include "goshawk/core/certificate.hpp"
+#include "goshawk/trajectory_optimizer/joint_spline.hpp"
+
+namespace goshawk::trajectory_optimizer {
+
+/// normal . y <= offset
+struct Face {
+  Vec3 normal;
+  double offset = 0.0;
+};
+
+/// A control point of a piece, a map of one joint alone, with the faces it must stay behind:
+/// faces[begin] .. faces[end - 1].
+struct FacePoint {
+  int joint = 0;
+  Vec3 map;  // y = joint * map
+  int begin = 0;
+  int end = 0;
+};
+
+/// A convex problem in the joints of a spline with pieces of given durations (in units of a time
+/// sigma) and, when scale is set, in eta = kappa^2 with t = kappa sigma:
+///
+///   minimise    time_weight * eta + jerk_weight / 2 * integral of |p'''|^2
+///   subject to  control points of pieces behind their faces
+///               |V_j|^2 <= v_max^2 eta,  |A_j| <= a_max eta   (euclidean: second-order cones)
+///               or the same for each component              (per_axis)
+///
+/// over the inner joints; the first and the last are given, as affine functions of eta:
+/// joints[0] + (eta - 1) start_rate. Without scale eta is 1. Source: the thesis' Improved
+/// Minimum-Jerk section in joint states, made jointly convex in shape and time scale.
+struct SplineProblem {
+  bool scale = true;
+  LimitNorm norm = LimitNorm::euclidean;
+  double time_weight = 1.0;
+  double jerk_weight = 1.0;
+  std::vector<double> durations;  // m
+  std::vector<double> v_max;      // m, of each piece
+  std::vector<double> a_max;      // m
+  std::vector<Joint> joints;      // m + 1: the ends, and a guess for the others
+  Joint start_rate = Joint::Zero();
+  Joint goal_rate = Joint::Zero();
+  std::vector<FacePoint> face_points;  // of points that are not constant
+  std::vector<Face> faces;
+
+  int pieces() const { return int(durations.size()); }
+  /// Keeps the capacity of every vector.
+  void clear();
+};
+
+}  // namespace goshawk::trajectory_optimizer

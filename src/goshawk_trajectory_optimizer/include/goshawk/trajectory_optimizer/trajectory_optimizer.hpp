@@ -1,0 +1,52 @@
+#pragma once
+
+#include <memory>
+#include <string_view>
+
+#include "goshawk/core/certificate.hpp"
+#include "goshawk/core/polytope.hpp"
+#include "goshawk/core/result.hpp"
+#include "goshawk/core/trajectory.hpp"
+#include "goshawk/trajectory_optimizer/config.hpp"
+
+namespace goshawk::trajectory_optimizer {
+
+/// A trajectory that holds its certificate.
+struct Solution {
+  Trajectory trajectory;
+  Certificate certificate;   // of the trajectory against the limits and polytopes asked for
+  int iterations = 0;        // of the interior-point method, over all solves
+  int solves = 0;
+  int pieces = 0;
+  double jerk_cost = 0.0;    // [m^2/s^5] integral of the squared jerk
+};
+
+/// Fits a piecewise quintic Bezier trajectory into a corridor. Keeps its working memory between
+/// calls; no answer depends on an earlier one, and equal inputs give equal bits.
+class TrajectoryOptimizer {
+ public:
+  /// @return invalid_parameter, naming each value out of range
+  static Result<TrajectoryOptimizer> create(const Config& config);
+  TrajectoryOptimizer(TrajectoryOptimizer&&) noexcept;
+  TrajectoryOptimizer& operator=(TrajectoryOptimizer&&) noexcept;
+  ~TrajectoryOptimizer();
+
+  /// @param corridor frame `map`; piece k of the answer stays in the polytope that it names
+  /// @param start, goal positions are the corridor's first and last waypoint (within 1 um);
+  ///   velocities and accelerations within the limits; jerk is not used
+  /// @return a certified solution; else invalid_input, invalid_limits, corridor_disjoint,
+  ///   start_infeasible (the start state breaks a limit, or leaves the corridor whatever is
+  ///   done), trajectory_infeasible or solver_failed
+  Result<Solution> optimise(const Corridor& corridor, const FlatState& start,
+                            const FlatState& goal, const Limits& limits);
+
+  /// Which method answers, for reports: "bezier-scale", "bezier-fixed", "bezier-thesis".
+  std::string_view implementation() const;
+
+ private:
+  class Method;
+  explicit TrajectoryOptimizer(const Config& config);
+  std::unique_ptr<Method> method_;
+};
+
+}  // namespace goshawk::trajectory_optimizer

@@ -1,0 +1,190 @@
+#include "method.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+namespace goshawk::trajectory_optimizer {
+namespace {
+
+// The largest speed and acceleration of a spline's hull, in units of the limits, piece by piece.
+struct Usage {
+  double speed = 0.0;
+  double acceleration = 0.0;
+};
+
+Usage usage(const BezierPiece& piece, const Limits& limits) {
+  const auto largest = [&](const auto& points) {
+    return limits.norm == LimitNorm::euclidean ? points.colwise().norm().maxCoeff()
+                                               : points.cwiseAbs().maxCoeff();
+  };
+  return {largest(piece.velocity_points()) / limits.v_max_m_s,
+          largest(piece.acceleration_points()) / limits.a_max_m_s2};
+}
+
+void stretch_durations(Plan& plan, double factor) {
+  for (double& duration : plan.durations_s) duration *= factor;
+}
+
+}  // namespace
+
+Result<Solution> TrajectoryOptimizer::Method::answer(const Request& request) {
+  best_.reset();
+  iterations_ = solves_ = 0;
+  if (config_.method == "thesis") return thesis(request);
+  return config_.method == "fixed" ? fixed(request) : scale(request);
+}
+
+// Design A with refinement B of docs/trajectories.md: solve, balance the pieces, solve again.
+Result<Solution> TrajectoryOptimizer::Method::scale(const Request& request) {
+  Plan plan = cut_trapezoid(request, config_);
+  if (plan.stays) return fixed(request);
+  const bool rests = request.rests();
+  const int passes = 1 + config_.refinement_passes + (rests ? 0 : 4);
+  for (int pass = 0; pass < passes; ++pass) {
+    double kappa = 1.0;
+    if (!solve_scale(request, plan, kappa)) break;
+    consider(request, plan);
+    // A moving end was linearised at kappa = 1: done when it has come to be so.
+    const bool settled = rests || std::abs(kappa - 1.0) < 1e-3;
+    if (pass >= config_.refinement_passes && settled && best_) break;
+    if (pass < config_.refinement_passes) balance(request, plan);
+  }
+  if (!best_ && solves_ > 0 && !rests) try_longer(request, plan);
+  if (best_) return finish();
+  return failure(request);
+}
+
+// Pieces that stay below both limits get less time.
+void TrajectoryOptimizer::Method::balance(const Request& request, Plan& plan) const {
+  constexpr double kExponent = 1.0;
+  for (std::size_t k = 0; k < plan.durations_s.size(); ++k) {
+    const auto piece =
+        BezierPiece::between(plan.joints[k], plan.joints[k + 1], plan.durations_s[k]);
+    const Usage used = usage(piece, request.limits);
+    const double u = std::max(used.speed, std::sqrt(used.acceleration));
+    plan.durations_s[k] *= std::pow(std::clamp(u, 0.3, 1.0), kExponent);
+  }
+}
+
+// The thesis' durations from one trapezoid, longer and longer until there is an answer. A flight
+// from rest to rest has one in the end; a moving start may have none.
+Result<Solution> TrajectoryOptimizer::Method::fixed(const Request& request) {
+  try_longer(request, cut_trapezoid(request, config_));
+  if (best_) return finish();
+  return failure(request);
+}
+
+Result<Solution> TrajectoryOptimizer::Method::thesis(const Request& request) {
+  Limits per_axis = request.limits;
+  per_axis.norm = LimitNorm::per_axis;
+  const Request thesis{request.corridor, request.start, request.goal, per_axis};
+  Plan plan = thesis_plan(thesis);
+  if (solve_fixed(thesis, plan)) consider(thesis, plan);
+  if (best_) return finish();
+  return failure(thesis);
+}
+
+void TrajectoryOptimizer::Method::try_longer(const Request& request, const Plan& plan) {
+  double factor = 1.0;
+  for (double step = 1e-3; factor <= config_.max_stretch; step = std::min(2.0 * step, 0.2)) {
+    Plan longer = plan;
+    stretch_durations(longer, factor);
+    if (solve_fixed(request, longer) && consider(request, longer)) return;
+    factor *= 1.0 + step;
+  }
+}
+
+bool TrajectoryOptimizer::Method::solve_scale(const Request& request, Plan& plan,
+                                              double& kappa) {
+  if (!make_problem(request, plan, true, config_.time_weight, problem_, units_)) return false;
+  last_ = solver_.solve(problem_, {config_.max_iterations, 1e-4, 1e-8, 1e-4});
+  iterations_ += last_.iterations;
+  ++solves_;
+  if (last_.status != SplineSolver::Status::solved || !(last_.eta > 0.0)) return false;
+  kappa = std::sqrt(last_.eta);
+  take_solution(request, solver_.joints(), units_, kappa, plan);
+  if (request.rests()) {  // exact: the shape is feasible at any longer duration
+    double exact = 0.0;
+    for (std::size_t k = 0; k < plan.durations_s.size(); ++k) {
+      const auto piece =
+          BezierPiece::between(plan.joints[k], plan.joints[k + 1], plan.durations_s[k]);
+      const Usage used = usage(piece, request.limits);
+      exact = std::max({exact, used.speed, std::sqrt(used.acceleration)});
+    }
+    exact *= 1.0 + 1e-12;
+    stretch_durations(plan, exact);
+    for (FlatState& joint : plan.joints) {
+      joint.velocity /= exact;
+      joint.acceleration /= exact * exact;
+    }
+  }
+  return true;
+}
+
+bool TrajectoryOptimizer::Method::solve_fixed(const Request& request, Plan& plan) {
+  ++solves_;
+  last_ = {};
+  if (!make_problem(request, plan, false, 1.0, problem_, units_)) {
+    last_.status = SplineSolver::Status::infeasible;
+    return false;
+  }
+  last_ = solver_.solve(problem_, {config_.max_iterations, 1e-7, 1e-9, 1e-6});
+  iterations_ += last_.iterations;
+  if (last_.status != SplineSolver::Status::solved) return false;
+  take_solution(request, solver_.joints(), units_, 1.0, plan);
+  return true;
+}
+
+bool TrajectoryOptimizer::Method::consider(const Request& request, const Plan& plan) {
+  Trajectory trajectory = make_trajectory(plan);
+  if (!trajectory.check()) return false;
+  const Certificate certificate =
+      certify(trajectory, request.corridor.polytopes, request.limits, request.start, request.goal);
+  if (!certificate.holds()) return false;
+  const double jerk_cost = trajectory.jerk_cost();
+  const double natural = natural_jerk(plan, request.limits);
+  const double cost = config_.time_weight * std::pow(plan.duration_s() / plan.reference_s, 2) +
+                      jerk_cost / (plan.duration_s() * natural * natural);
+  if (best_ && best_cost_ <= cost) return true;
+  best_cost_ = cost;
+  best_ = Solution{std::move(trajectory), certificate, 0, 0, int(plan.durations_s.size()),
+                   jerk_cost};
+  return true;
+}
+
+Solution TrajectoryOptimizer::Method::finish() {
+  best_->iterations = iterations_;
+  best_->solves = solves_;
+  return std::move(*best_);
+}
+
+Error TrajectoryOptimizer::Method::failure(const Request& request) const {
+  using Status = SplineSolver::Status;
+  char numbers[160];
+  std::snprintf(numbers, sizeof numbers,
+                " (%d solves, %d iterations; last primal residual %.2g, gap %.2g)", solves_,
+                iterations_, last_.primal_residual, last_.gap);
+  if (config_.method == "thesis" && last_.status == Status::infeasible) {
+    return fail(ErrorCode::trajectory_infeasible,
+                "one quintic a segment with trapezoid durations cannot stay in the corridor and "
+                "its limits: use method scale or fixed" + std::string(numbers));
+  }
+  if (!request.rests() && last_.status != Status::numerical_trouble) {
+    return fail(ErrorCode::start_infeasible,
+                "from a speed of " + std::to_string(request.start.velocity.norm()) +
+                    " m/s no trajectory within the limits stays in the corridor: replan from "
+                    "farther ahead, widen the corridor or raise the acceleration limit" + numbers);
+  }
+  if (last_.status == Status::infeasible) {
+    return fail(ErrorCode::trajectory_infeasible,
+                "no trajectory within the limits stays in the corridor: let consecutive polytopes "
+                "overlap more or raise max_stretch" + std::string(numbers));
+  }
+  return fail(ErrorCode::solver_failed,
+              "the solver stopped without an answer: look for very thin or very small polytopes, "
+              "or raise max_iterations" + std::string(numbers));
+}
+
+}  // namespace goshawk::trajectory_optimizer

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <optional>
+
+#include "goshawk/trajectory_optimizer/plan.hpp"
+#include "goshawk/trajectory_optimizer/spline_solver.hpp"
+#include "goshawk/trajectory_optimizer/trajectory_optimizer.hpp"
+
+namespace goshawk::trajectory_optimizer {
+
+/// The three methods over one solver and its memory.
+class TrajectoryOptimizer::Method {
+ public:
+  explicit Method(const Config& config) : config_(config) {}
+
+  const Config& config() const { return config_; }
+  Result<Solution> answer(const Request& request);
+
+ private:
+  Result<Solution> scale(const Request& request);
+  Result<Solution> fixed(const Request& request);
+  Result<Solution> thesis(const Request& request);
+
+  /// Time and shape together, once: the plan becomes the solution and kappa its time scale.
+  bool solve_scale(const Request& request, Plan& plan, double& kappa);
+  /// Least jerk with the plan's durations.
+  bool solve_fixed(const Request& request, Plan& plan);
+  /// Fixed durations, longer and longer, until a plan is certified.
+  void try_longer(const Request& request, const Plan& plan);
+  /// Takes time from pieces that stay below their limits.
+  void balance(const Request& request, Plan& plan) const;
+  /// Keeps the plan if it is certified and better than what is kept.
+  bool consider(const Request& request, const Plan& plan);
+  Solution finish();
+  Error failure(const Request& request) const;
+
+  Config config_;
+  SplineSolver solver_;
+  SplineProblem problem_;
+  Units units_;
+  std::optional<Solution> best_;
+  double best_cost_ = 0.0;
+  int iterations_ = 0;
+  int solves_ = 0;
+  SplineSolver::Outcome last_;
+};
+
+}  // namespace goshawk::trajectory_optimizer

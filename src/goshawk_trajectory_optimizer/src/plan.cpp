@@ -1,0 +1,232 @@
+#include "goshawk/trajectory_optimizer/plan.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "goshawk/trajectory_optimizer/time_profile.hpp"
+
+namespace goshawk::trajectory_optimizer {
+namespace {
+
+constexpr double kLeastLength = 1e-6;   // [m] of a path, for the estimate of its duration
+constexpr double kShortest = 0.05;      // of a mean piece: shorter ones cost accuracy
+
+double speed_along(const FlatState& state, const Vec3& from, const Vec3& to) {
+  const Vec3 step = to - from;
+  return step.norm() > 0.0 ? std::max(0.0, state.velocity.dot(step) / step.norm()) : 0.0;
+}
+
+void append(Plan& plan, double duration_s, int polytope, const FlatState& end) {
+  plan.durations_s.push_back(duration_s);
+  plan.polytopes.push_back(polytope);
+  plan.joints.push_back(end);
+}
+
+double path_length(const std::vector<Vec3>& waypoints) {
+  double length = 0.0;
+  for (std::size_t k = 0; k + 1 < waypoints.size(); ++k) {
+    length += (waypoints[k + 1] - waypoints[k]).norm();
+  }
+  return length;
+}
+
+bool is_moving(const FlatState& s) { return !s.velocity.isZero(0.0) || !s.acceleration.isZero(0.0); }
+
+}  // namespace
+
+bool Request::rests() const { return !is_moving(start) && !is_moving(goal); }
+
+double Plan::duration_s() const {
+  return std::accumulate(durations_s.begin(), durations_s.end(), 0.0);
+}
+
+Plan cut_trapezoid(const Request& request, const Config& config) {
+  const auto& waypoints = request.corridor.waypoints_map;
+  const std::size_t n = waypoints.size() - 1;
+  const TimeProfile profile(waypoints, request.limits,
+                            speed_along(request.start, waypoints[0], waypoints[1]),
+                            speed_along(request.goal, waypoints[n - 1], waypoints[n]));
+  Plan plan;
+  plan.stays = request.rests() && path_length(waypoints) <= kLeastLength;
+  plan.reference_s = plan.stays ? config.piece_duration_s : profile.duration_s();
+  plan.reference_s = std::max(plan.reference_s, rest_to_rest_duration_s(
+      kLeastLength, request.limits.v_max_m_s, request.limits.a_max_m_s2));
+  const double longest = std::min(config.piece_duration_s, plan.reference_s / config.min_pieces);
+  plan.joints.push_back(request.start);
+  for (int k = 0; k < profile.segments(); ++k) {
+    const double duration =
+        plan.stays ? plan.reference_s / profile.segments() : profile.duration_s(k);
+    const int pieces = std::max(1, int(std::ceil(duration / longest - 1e-9)));
+    for (int i = 1; i <= pieces; ++i) {
+      append(plan, std::max(duration / pieces, kShortest * longest), k,
+             profile.state(k, duration * i / pieces));
+    }
+  }
+  plan.joints.back() = request.goal;
+  return plan;
+}
+
+Plan thesis_plan(const Request& request) {
+  const auto& waypoints = request.corridor.waypoints_map;
+  Plan plan;
+  plan.joints.push_back(request.start);
+  for (std::size_t k = 0; k + 1 < waypoints.size(); ++k) {
+    const double length = std::max((waypoints[k + 1] - waypoints[k]).norm(), kLeastLength);
+    FlatState end;
+    end.position = waypoints[k + 1];
+    append(plan, rest_to_rest_duration_s(length, request.limits.v_max_m_s,
+                                         request.limits.a_max_m_s2),
+           int(k), end);
+  }
+  plan.joints.back() = request.goal;
+  plan.reference_s = plan.duration_s();
+  return plan;
+}
+
+namespace {
+
+Joint to_units(const FlatState& state, const Units& units) {
+  Joint joint;
+  joint.col(0) = (state.position - units.origin_map) / units.length_m;
+  joint.col(1) = state.velocity * (units.time_s / units.length_m);
+  joint.col(2) = state.acceleration * (units.time_s * units.time_s / units.length_m);
+  return joint;
+}
+
+// Adds the faces that control point j of piece k must stay behind.
+class FaceWriter {
+ public:
+  FaceWriter(const Request& request, const Plan& plan, const Units& units, SplineProblem& problem)
+      : request_(request), plan_(plan), units_(units), problem_(problem) {}
+
+  // @return false where the point is constant and outside
+  bool add(int piece, int j) {
+    const int joint = j < 3 ? piece : piece + 1;
+    const PointMap map = position_point(j, problem_.durations[std::size_t(piece)]);
+    const Polytope& polytope =
+        request_.corridor.polytopes[std::size_t(plan_.polytopes[std::size_t(piece)])];
+    const Vec3 coefficients = j < 3 ? map.from_first : map.from_second;
+    const bool end = joint == 0 || joint == problem_.pieces();
+    if (end) return add_at_end(joint, coefficients, polytope);
+    const int begin = int(problem_.faces.size());
+    for (int i = 0; i < polytope.faces(); ++i) {
+      problem_.faces.push_back({polytope.A.row(i).transpose(), offset(polytope, i)});
+    }
+    finish(joint, coefficients, begin);
+    return true;
+  }
+
+ private:
+  double offset(const Polytope& polytope, int i) const {
+    return (polytope.b[i] - polytope.A.row(i).dot(units_.origin_map)) / units_.length_m;
+  }
+
+  void finish(int joint, const Vec3& coefficients, int begin) {
+    const int end = int(problem_.faces.size());
+    if (end > begin) problem_.face_points.push_back({joint, coefficients, begin, end});
+  }
+
+  // An end moves with the time scale only. Faces that it moves away from need no constraint.
+  bool add_at_end(int joint, const Vec3& coefficients, const Polytope& polytope) {
+    const Joint& x = problem_.joints[std::size_t(joint)];
+    const Joint& rate = joint == 0 ? problem_.start_rate : problem_.goal_rate;
+    const Vec3 y = x * coefficients;
+    const bool moves = problem_.scale && !rate.isZero(0.0);
+    const int begin = int(problem_.faces.size());
+    for (int i = 0; i < polytope.faces(); ++i) {
+      const Vec3 normal = polytope.A.row(i).transpose();
+      const double tolerance = 0.5e-6 / units_.length_m;  // half of the certificate's
+      const double bound = std::max(offset(polytope, i), normal.dot(x.col(0))) + tolerance;
+      if (!moves && normal.dot(y) > bound) return false;
+      const bool departs = coefficients[1] * normal.dot(x.col(1)) <= 0.0 &&
+                           coefficients[2] * normal.dot(x.col(2)) <= 0.0;
+      if (moves && !departs) problem_.faces.push_back({normal, bound});
+    }
+    finish(joint, coefficients, begin);
+    return true;
+  }
+
+  const Request& request_;
+  const Plan& plan_;
+  const Units& units_;
+  SplineProblem& problem_;
+};
+
+}  // namespace
+
+double natural_jerk(const Plan& plan, const Limits& limits) {
+  const double ramp_s = std::min(limits.v_max_m_s / limits.a_max_m_s2, 0.5 * plan.reference_s);
+  return limits.a_max_m_s2 / ramp_s;
+}
+
+bool make_problem(const Request& request, const Plan& plan, bool scale, double time_weight,
+                  SplineProblem& problem, Units& units) {
+  const std::size_t m = plan.durations_s.size();
+  const Limits& limits = request.limits;
+  units.origin_map = request.start.position;
+  units.time_s = plan.duration_s() / double(m);
+  units.length_m = limits.v_max_m_s * units.time_s;
+  const double tighten = 1.0 - 1e-9;  // rounding must not cost the certificate
+
+  problem.clear();
+  problem.scale = scale;
+  problem.norm = limits.norm;
+  problem.time_weight = 1.0;
+  // Mean squared jerk in natural units; the problem has one half before it.
+  const double jerk_unit = units.length_m / std::pow(units.time_s, 3);
+  problem.jerk_weight =
+      2.0 * std::pow(jerk_unit / natural_jerk(plan, limits), 2) / double(m) / time_weight;
+  for (const double duration : plan.durations_s) {
+    problem.durations.push_back(duration / units.time_s);
+  }
+  problem.v_max.assign(m, tighten);
+  problem.a_max.assign(m, tighten * limits.a_max_m_s2 * units.time_s / limits.v_max_m_s);
+  for (const FlatState& joint : plan.joints) problem.joints.push_back(to_units(joint, units));
+  if (scale) {  // v' = v sqrt(eta), a' = a eta
+    const auto rate = [](const Joint& x) {
+      Joint r = Joint::Zero();
+      r.col(1) = 0.5 * x.col(1);
+      r.col(2) = x.col(2);
+      return r;
+    };
+    problem.start_rate = rate(problem.joints.front());
+    problem.goal_rate = rate(problem.joints.back());
+  }
+  FaceWriter faces(request, plan, units, problem);
+  bool inside = true;
+  for (int k = 0; k < int(m); ++k) {
+    const bool enters = k > 0 && plan.polytopes[std::size_t(k)] != plan.polytopes[std::size_t(k) - 1];
+    for (int j = enters ? 0 : 1; j <= (k + 1 < int(m) ? 5 : 4); ++j) {
+      inside = faces.add(k, j) && inside;
+    }
+  }
+  return inside;
+}
+
+void take_solution(const Request& request, const std::vector<Joint>& joints, const Units& units,
+                   double kappa, Plan& plan) {
+  const double time = units.time_s * kappa;
+  for (double& duration : plan.durations_s) duration *= kappa;
+  for (std::size_t k = 1; k + 1 < joints.size(); ++k) {
+    FlatState& state = plan.joints[k];
+    state.position = units.origin_map + units.length_m * joints[k].col(0);
+    state.velocity = (units.length_m / time) * joints[k].col(1);
+    state.acceleration = (units.length_m / (time * time)) * joints[k].col(2);
+  }
+  plan.joints.front() = request.start;
+  plan.joints.back() = request.goal;
+}
+
+Trajectory make_trajectory(const Plan& plan) {
+  Trajectory trajectory;
+  trajectory.pieces.reserve(plan.durations_s.size());
+  for (std::size_t k = 0; k < plan.durations_s.size(); ++k) {
+    trajectory.pieces.push_back(
+        BezierPiece::between(plan.joints[k], plan.joints[k + 1], plan.durations_s[k]));
+    trajectory.pieces.back().polytope = plan.polytopes[k];
+  }
+  return trajectory;
+}
+
+}  // namespace goshawk::trajectory_optimizer

@@ -1,0 +1,16 @@
+#include "goshawk/trajectory_optimizer/spline_problem.hpp"
+
+namespace goshawk::trajectory_optimizer {
+
+void SplineProblem::clear() {
+  durations.clear();
+  v_max.clear();
+  a_max.clear();
+  joints.clear();
+  face_points.clear();
+  faces.clear();
+  start_rate.setZero();
+  goal_rate.setZero();
+}
+
+}  // namespace goshawk::trajectory_optimizer

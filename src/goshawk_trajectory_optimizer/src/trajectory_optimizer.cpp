@@ -1,0 +1,56 @@
+#include "goshawk/trajectory_optimizer/trajectory_optimizer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+#include <utility>
+
+#include "goshawk/trajectory_optimizer/request_check.hpp"
+#include "method.hpp"
+
+namespace goshawk::trajectory_optimizer {
+namespace {
+
+std::string faults_of(const Config& config) {
+  std::string faults;
+  describe(config, [&](const char* name, const auto& value, const char*, const char*,
+                       const auto& rule) {
+    bool valid = true;
+    if constexpr (std::is_same_v<std::decay_t<decltype(value)>, std::string>) {
+      valid = std::ranges::find(rule.choices, value) != rule.choices.end();
+    } else {
+      valid = rule.contains(double(value));
+    }
+    if (!valid) faults += std::string(faults.empty() ? "" : ", ") + name;
+  });
+  return faults;
+}
+
+}  // namespace
+
+TrajectoryOptimizer::TrajectoryOptimizer(const Config& config)
+    : method_(std::make_unique<Method>(config)) {}
+TrajectoryOptimizer::TrajectoryOptimizer(TrajectoryOptimizer&&) noexcept = default;
+TrajectoryOptimizer& TrajectoryOptimizer::operator=(TrajectoryOptimizer&&) noexcept = default;
+TrajectoryOptimizer::~TrajectoryOptimizer() = default;
+
+Result<TrajectoryOptimizer> TrajectoryOptimizer::create(const Config& config) {
+  if (const std::string faults = faults_of(config); !faults.empty()) {
+    return fail(ErrorCode::invalid_parameter, "out of range in the optimizer's config: " + faults);
+  }
+  return TrajectoryOptimizer(config);
+}
+
+Result<Solution> TrajectoryOptimizer::optimise(const Corridor& corridor, const FlatState& start,
+                                               const FlatState& goal, const Limits& limits) {
+  if (auto status = check_request(corridor, start, goal, limits); !status) return status.error();
+  return method_->answer({corridor, start, goal, limits});
+}
+
+std::string_view TrajectoryOptimizer::implementation() const {
+  const std::string& method = method_->config().method;
+  if (method == "thesis") return "bezier-thesis";
+  return method == "fixed" ? "bezier-fixed" : "bezier-scale";
+}
+
+}  // namespace goshawk::trajectory_optimizer
