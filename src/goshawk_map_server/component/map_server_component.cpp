@@ -1,0 +1,156 @@
+#include <octomap/OcTree.h>
+
+#include <optional>
+
+#include "cloud.hpp"
+#include "goshawk/conversions/grid.hpp"
+#include "goshawk/conversions/vehicle.hpp"
+#include "goshawk/map_server/config.hpp"
+#include "goshawk/map_server/live_map.hpp"
+#include "goshawk/runtime/component.hpp"
+#include "goshawk/runtime/stage.hpp"
+#include "octomap_msgs.h"
+
+namespace goshawk::map_server {
+namespace {
+
+using namespace goshawk::runtime;
+namespace msg = goshawk_msgs::msg;
+
+// How often, at the most, the whole map is published anew for late joiners while scans come in.
+constexpr double kWholeMapPeriod_s = 1.0;
+
+Box box_of(const Config& c) {
+  return {Vec3(c.box_x_min_m, c.box_y_min_m, c.box_z_min_m),
+          Vec3(c.box_x_max_m, c.box_y_max_m, c.box_z_max_m)};
+}
+
+LiveMap make_map(const Config& config) {
+  auto map = [&]() -> Result<LiveMap> {
+    if (config.map_file.empty()) {
+      if (!config.use_box) {
+        return fail(ErrorCode::invalid_parameter,
+                    "map_server has neither a map_file nor use_box: name a map, or the box that "
+                    "begins as unknown space");
+      }
+      return LiveMap::unknown_space(box_of(config), config.resolution_m, growth(config),
+                                    config.max_voxels);
+    }
+    auto source = load_map(config.map_file, load_options(config));
+    if (!source) return source.error();
+    return LiveMap::from_source(*std::move(source), voxelize_options(config), growth(config));
+  }();
+  if (!map) throw StartupFault(map.error());
+  return *std::move(map);
+}
+
+/// A map file, and cloud_in -> map/voxels, map/voxels/updates, octomap_binary
+class MapServerComponent : public Component {
+ public:
+  explicit MapServerComponent(Node& node)
+      : node_(node),
+        config_(node.parameters<Config>()),
+        map_(make_map(config_)),
+        reporter_(node, "octomap"),
+        voxels_(node.advertise<msg::VoxelGrid>("map/voxels", Qos::latched())),
+        updates_(node.advertise<msg::VoxelGridUpdate>("map/voxels/updates",
+                                                      Qos::reliable_last(50))),
+        octomap_(node.advertise<octomap_msgs::msg::Octomap>("octomap_binary", Qos::latched())) {
+    node.subscribe<sensor_msgs::msg::PointCloud2>(
+        "cloud_in", Qos::best_effort(2),
+        [this](const sensor_msgs::msg::PointCloud2& m, const MessageInfo&) { on_cloud(m); });
+    node.subscribe<nav_msgs::msg::Odometry>(
+        "odom", Qos::best_effort(), [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) {
+          if (auto state = conversions::from_msg(m)) vehicle_ = *state;
+        });
+    node.every(kWholeMapPeriod_s, [this] {
+      if (changed_) publish_whole();
+    });
+    publish_whole();
+    const auto& grid = map_.grid();
+    reporter_.ready("serves " + to_text(grid.geometry.size) + " voxels of " +
+                    std::to_string(grid.geometry.resolution_m) + " m, grown by " +
+                    std::to_string(grid.inflation_m) + " m");
+  }
+
+ private:
+  void publish_whole() {
+    changed_ = false;
+    {
+      msg::VoxelGrid m;  // freed at once: the writer keeps the bytes for late joiners
+      m.header(conversions::make_header(node_.now_ns()));
+      conversions::fill_msg(map_.grid(), m);
+      send(voxels_, m);
+    }
+    const std::string bytes = binary_payload(map_.tree());
+    octomap_msgs::msg::Octomap m;
+    m.header(conversions::make_header(node_.now_ns()));
+    m.binary(true);
+    m.id("OcTree");
+    m.resolution(map_.tree().getResolution());
+    m.data().assign(bytes.begin(), bytes.end());
+    send(octomap_, m);
+  }
+
+  void on_cloud(const sensor_msgs::msg::PointCloud2& m) {
+    auto points = points_in_map(m);
+    if (!points) return reporter_.fault(points.error());
+    const Vec3 origin = vehicle_ ? vehicle_->position_map : Vec3::Zero();
+    auto result = map_.insert_scan(*points, origin, config_.max_range_m);
+    if (!result) return reporter_.fault(result.error());
+    publish_update(result->update);
+    changed_ = true;
+  }
+
+  // Clouds come in the body's frame, turned by the newest odometry, or in the map's.
+  Result<std::vector<Vec3>> points_in_map(const sensor_msgs::msg::PointCloud2& m) const {
+    if (!vehicle_) {
+      return fail(ErrorCode::tracking_lost,
+                  "a cloud came before any odometry, so its sensor's place is not known");
+    }
+    auto points = points_of(m);
+    if (!points || m.header().frame_id() == conversions::kMapFrame) return points;
+    if (auto s = conversions::check_frame(m.header(), conversions::kBodyFrame, "a cloud"); !s) {
+      return s.error();
+    }
+    for (auto& p : *points) p = vehicle_->position_map + vehicle_->q_map_base * p;
+    return points;
+  }
+
+  void publish_update(const GridUpdate& update) {
+    msg::VoxelGridUpdate m;
+    m.header(conversions::make_header(node_.now_ns()));
+    m.from_version(update.from_version);
+    m.to_version(update.to_version);
+    for (const auto& brick : update.bricks) {
+      msg::VoxelBrick b;
+      b.word_x(std::uint32_t(brick.index.x));
+      b.brick_y(std::uint32_t(brick.index.y));
+      b.brick_z(std::uint32_t(brick.index.z));
+      b.occupied().assign(brick.occupied.begin(), brick.occupied.end());
+      b.known().assign(brick.known.begin(), brick.known.end());
+      m.bricks().push_back(std::move(b));
+    }
+    send(updates_, m);
+  }
+
+  template <typename Message>
+  void send(const Publisher<Message>& publisher, const Message& message) {
+    if (auto status = publisher.publish(message); !status) reporter_.fault(status.error());
+  }
+
+  Node& node_;
+  Config config_;
+  LiveMap map_;
+  StageReporter reporter_;
+  Publisher<msg::VoxelGrid> voxels_;
+  Publisher<msg::VoxelGridUpdate> updates_;
+  Publisher<octomap_msgs::msg::Octomap> octomap_;
+  std::optional<RigidBodyState> vehicle_;
+  bool changed_ = false;
+};
+
+}  // namespace
+}  // namespace goshawk::map_server
+
+GOSHAWK_REGISTER_COMPONENT(goshawk::map_server::MapServerComponent, goshawk::map_server::Config)
