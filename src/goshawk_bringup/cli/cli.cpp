@@ -1,0 +1,56 @@
+#include "cli.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+
+namespace goshawk::cli {
+
+std::optional<int> parse(CLI::App& app, Arguments arguments) {
+  std::reverse(arguments.begin(), arguments.end());  // CLI11 takes them from the back
+  try {
+    app.parse(arguments);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kDone : kWrongCall;
+  }
+  return {};
+}
+
+Result<Vec3> parse_point(const std::string& text) {
+  Vec3 point;
+  const char* at = text.data();
+  const char* end = at + text.size();
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto [stop, error] = std::from_chars(at, end, point[axis]);
+    const bool last = axis == 2;
+    if (error != std::errc{} || (last ? stop != end : stop == end || *stop != ',')) {
+      return fail(ErrorCode::invalid_input,
+                  "'" + text + "' is not a point: write x,y,z in metres, as in 3,0,1");
+    }
+    at = stop + 1;
+  }
+  return point;
+}
+
+int report_failure(const Error& error, bool json, int status) {
+  const std::string code(to_string(error.code));
+  if (json) {
+    const Json object{{"ok", false}, {"code", code}, {"message", error.message}};
+    std::printf("%s\n", object.dump(2).c_str());
+  } else {
+    std::fprintf(stderr, "goshawk: %s: %s\n", code.c_str(), error.message.c_str());
+  }
+  return status;
+}
+
+Json to_json(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json to_json(const Vec3& v) { return Json::array({to_json(v.x()), to_json(v.y()), to_json(v.z())}); }
+
+Json to_json(const std::vector<Vec3>& points) {
+  Json array = Json::array();
+  for (const auto& p : points) array.push_back(to_json(p));
+  return array;
+}
+
+}  // namespace goshawk::cli

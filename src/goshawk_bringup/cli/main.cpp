@@ -1,0 +1,71 @@
+// goshawk VERB ...: the front door.
+
+#include <algorithm>
+#include <cstdio>
+
+#include "goshawk/introspection/node_command.hpp"
+#include "goshawk/introspection/param_command.hpp"
+#include "goshawk/introspection/topic_command.hpp"
+#include "goshawk/runtime/parameters.hpp"
+#include "verbs.hpp"
+
+namespace {
+
+using namespace goshawk;
+
+struct Verb {
+  const char* name;
+  const char* what;
+  int (*run)(const cli::Arguments&);
+};
+
+constexpr Verb kVerbs[] = {
+    {"fly", "make or load a world, start every stage, fly it, judge it, draw it", &cli::fly_command},
+    {"plan", "one plan in this process, no DDS: path, corridor, certified trajectory",
+     &cli::plan_command},
+    {"world", "make a world, or convert a map", &cli::world_command},
+    {"launch", "start what a launch file lists, supervised, until Ctrl-C", &cli::launch_command},
+    {"run", "start one component: goshawk run COMPONENT --ros-args ...", &cli::run_command},
+    {"topic", "list, info, echo, hz, delay, bw, pub",
+     [](const cli::Arguments& a) { return introspection::topic_command(a); }},
+    {"node", "list", [](const cli::Arguments& a) { return introspection::node_command(a); }},
+    {"param", "describe COMPONENT: every parameter with unit, default and range",
+     [](const cli::Arguments& a) { return introspection::param_command(a); }},
+};
+
+void print_help() {
+  std::printf("goshawk: plan and fly through clutter\n\nusage: goshawk VERB [...], and goshawk VERB "
+              "--help for each\n\n");
+  for (const Verb& verb : kVerbs) std::printf("  %-8s %s\n", verb.name, verb.what);
+  std::printf("\nDDS domain: ROS_DOMAIN_ID (default 0). Interfaces: GOSHAWK_INTERFACES, loopback by "
+              "default.\nExit status: 0 done, 1 not done (the code says why), 2 a wrong call.\n");
+}
+
+int unknown_verb(const std::string& name) {
+  std::vector<std::string> names;
+  for (const Verb& verb : kVerbs) names.emplace_back(verb.name);
+  const std::string near = runtime::nearest_name(name, names);
+  std::fprintf(stderr, "goshawk: there is no verb '%s'%s; goshawk --help lists them\n",
+               name.c_str(), near.empty() ? "" : (", did you mean " + near + "?").c_str());
+  return cli::kWrongCall;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  cli::Arguments arguments(argv + 1, argv + argc);
+  if (arguments.empty() || arguments[0] == "--help" || arguments[0] == "-h") {
+    print_help();
+    return arguments.empty() ? cli::kWrongCall : cli::kDone;
+  }
+  const std::string name = arguments.front();
+  arguments.erase(arguments.begin());
+  const auto* verb = std::ranges::find_if(kVerbs, [&](const Verb& v) { return name == v.name; });
+  if (verb == std::end(kVerbs)) return unknown_verb(name);
+  try {
+    return verb->run(arguments);
+  } catch (const std::exception& bug) {
+    std::fprintf(stderr, "goshawk %s: internal fault: %s\n", name.c_str(), bug.what());
+    return cli::kNotDone;
+  }
+}

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "goshawk/core/certificate.hpp"
+#include "goshawk/corridor_builder/corridor_builder.hpp"
+#include "goshawk/map_server/config.hpp"
+#include "goshawk/path_search/path_search.hpp"
+#include "goshawk/runtime/ros_args.hpp"
+#include "goshawk/trajectory_optimizer/trajectory_optimizer.hpp"
+
+namespace goshawk::cli {
+
+/// The parameters of the stages that plan, read from the same files as the components'.
+struct PlanningConfig {
+  map_server::Config map;
+  path_search::Config search;
+  corridor_builder::Config corridor;
+  trajectory_optimizer::Config trajectory;
+
+  static Result<PlanningConfig> read(const runtime::RosArgs& args);
+};
+
+struct StageTime {
+  std::string name;
+  std::string implementation;
+  double compute_us = 0.0;
+};
+
+/// A map as it is, and as the vehicle's centre sees it.
+struct LoadedMap {
+  map_server::RawVoxels raw;
+  std::shared_ptr<const VoxelGrid> grown;
+  map_server::OcTreePtr tree;
+};
+Result<LoadedMap> load_map(const map_server::Config& config);
+
+/// What came out of each stage, as far as it went.
+struct Plan {
+  std::vector<StageTime> stages;
+  std::optional<path_search::PlannedPath> path;
+  std::optional<Corridor> corridor;
+  std::optional<trajectory_optimizer::Solution> solution;
+  Status outcome = success();
+};
+
+/// All planning stages one after another in this process, without middleware.
+class Planner {
+ public:
+  static Result<Planner> create(const PlanningConfig& config);
+  void set_map(std::shared_ptr<const VoxelGrid> grid);
+  Plan plan(const FlatState& start, const FlatState& goal, const Limits& limits);
+
+ private:
+  Planner(path_search::PathSearch search, corridor_builder::CorridorBuilder builder,
+          trajectory_optimizer::TrajectoryOptimizer optimizer)
+      : search_(std::move(search)),
+        builder_(std::move(builder)),
+        optimizer_(std::move(optimizer)) {}
+  Status run(const FlatState& start, const FlatState& goal, const Limits& limits, Plan& plan);
+
+  path_search::PathSearch search_;
+  corridor_builder::CorridorBuilder builder_;
+  trajectory_optimizer::TrajectoryOptimizer optimizer_;
+  std::shared_ptr<const VoxelGrid> grid_;
+};
+
+}  // namespace goshawk::cli

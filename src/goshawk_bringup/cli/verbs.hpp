@@ -1,0 +1,14 @@
+#pragma once
+
+#include "cli.hpp"
+
+/// The verbs of the front door. Each takes the arguments behind it and returns an exit status.
+namespace goshawk::cli {
+
+int plan_command(const Arguments& arguments);
+int world_command(const Arguments& arguments);
+int fly_command(const Arguments& arguments);
+int run_command(const Arguments& arguments);
+int launch_command(const Arguments& arguments);
+
+}  // namespace goshawk::cli
