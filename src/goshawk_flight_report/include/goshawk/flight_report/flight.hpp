@@ -1,0 +1,54 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "goshawk/core/certificate.hpp"
+#include "goshawk/core/polytope.hpp"
+#include "goshawk/core/result.hpp"
+#include "goshawk/core/trajectory.hpp"
+#include "goshawk/core/grid_geometry.hpp"
+
+namespace goshawk::flight_report {
+
+/// Where the vehicle was at one moment, as flown. Frame `map`.
+struct FlownSample {
+  double t_s = 0.0;                                                // [s] on the flight's clock
+  Vec3 position_map = Vec3::Zero();                                // [m]
+  Vec3 velocity_map = Vec3::Zero();                                // [m/s]
+  Eigen::Quaterniond q_map_base = Eigen::Quaterniond::Identity();  // base_link to map
+};
+
+/// From one goal to the next. Whatever is not there stays empty and is not drawn: a leg may have
+/// a path and no trajectory.
+struct Leg {
+  std::vector<Vec3> raw_path_map;   // [m] voxel centres as searched
+  std::vector<Vec3> waypoints_map;  // [m] the pruned polyline
+  std::vector<Polytope> corridor;
+  Trajectory trajectory;
+  double start_t_s = 0.0;  // [s] when the trajectory began, on the flight's clock
+};
+
+/// All that the pictures and files of one flight are made from.
+struct Flight {
+  std::string title = "Goshawk flight";
+  const VoxelGrid* obstacles = nullptr;  // not owned: the map as it is, or nothing
+  const VoxelGrid* grown = nullptr;      // not owned: grown by the vehicle, or nothing
+  std::vector<Leg> legs;
+  std::vector<FlownSample> flown;
+  Limits limits;
+  double body_radius_m = 0.15;  // [m] obstacles this close in height to the flight are drawn dark
+
+  /// @return invalid_input, naming the part: nothing to draw; numbers that are not finite or
+  /// beyond 1e6 m; time of the flown track that goes backwards; a body without a radius; a grid, a
+  /// polytope, a trajectory or limits that fail their own check
+  Status check() const;
+
+  /// Where the vehicle should be at t_s: on the leg that began last, at that leg's end once its
+  /// time is over. Nothing before the first leg, or where no leg has a trajectory.
+  std::optional<FlatState> planned_at(double t_s) const;
+};
+
+}  // namespace goshawk::flight_report

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <vector>
+
+#include "goshawk/core/polytope.hpp"
+
+namespace goshawk::flight_report {
+
+/// The corners of one face, counter-clockwise seen from outside. Frame `map`, [m].
+using Polygon = std::vector<Vec3>;
+
+/// @param extent_m [m] faces are cut off this far from the plane's foot near the origin
+/// @return one polygon for each face that bounds the polytope; redundant planes have none, and an
+/// empty polytope has none at all. @pre polytope.check() ok
+std::vector<Polygon> face_polygons(const Polytope& polytope, double extent_m = 1e4);
+
+/// @return the corners of the convex hull, counter-clockwise (Andrew's monotone chain, 1979);
+/// fewer than three where the points are fewer or all on a line
+std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points);
+
+}  // namespace goshawk::flight_report

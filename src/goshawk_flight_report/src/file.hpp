@@ -1,0 +1,13 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "goshawk/core/result.hpp"
+
+namespace goshawk::flight_report {
+
+/// @return io_failed, naming the file, where any of the bytes could not be written
+Status write_file(const std::filesystem::path& file, const std::string& bytes);
+
+}  // namespace goshawk::flight_report

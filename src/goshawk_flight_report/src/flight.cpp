@@ -1,0 +1,106 @@
+#include "goshawk/flight_report/flight.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace goshawk::flight_report {
+
+namespace {
+
+constexpr double kFarthest_m = 1e6;
+
+Error wrong(const std::string& what) {
+  return fail(ErrorCode::invalid_input, "the flight cannot be drawn: " + what);
+}
+
+bool usable(const Vec3& p) { return p.allFinite() && p.cwiseAbs().maxCoeff() <= kFarthest_m; }
+
+bool usable(const std::vector<Vec3>& points) {
+  for (const Vec3& p : points) {
+    if (!usable(p)) return false;
+  }
+  return true;
+}
+
+Status check_grid(const VoxelGrid* grid, const char* name) {
+  if (grid == nullptr) return success();
+  if (auto status = grid->check(); !status) {
+    return wrong(std::string("its ") + name + ": " + status.error().message);
+  }
+  if (!usable(grid->geometry.origin_map) || !usable(grid->geometry.upper_corner_map())) {
+    return wrong(std::string("its ") + name + " reach beyond 1e6 m");
+  }
+  return success();
+}
+
+Status check_leg(const Leg& leg, const std::string& name) {
+  if (!usable(leg.raw_path_map) || !usable(leg.waypoints_map)) {
+    return wrong(name + " has a path point that is not finite or beyond 1e6 m");
+  }
+  for (const Polytope& polytope : leg.corridor) {
+    if (auto status = polytope.check(); !status) {
+      return wrong(name + " has a bad polytope: " + status.error().message);
+    }
+  }
+  if (!std::isfinite(leg.start_t_s)) return wrong(name + " has a start time that is not finite");
+  if (leg.trajectory.pieces.empty()) return success();
+  if (auto status = leg.trajectory.check(); !status) {
+    return wrong(name + " has a bad trajectory: " + status.error().message);
+  }
+  for (const BezierPiece& piece : leg.trajectory.pieces) {
+    if (piece.control_points.cwiseAbs().maxCoeff() > kFarthest_m) {
+      return wrong(name + " has a control point beyond 1e6 m");
+    }
+  }
+  return success();
+}
+
+Status check_flown(const std::vector<FlownSample>& flown) {
+  for (std::size_t i = 0; i < flown.size(); ++i) {
+    const FlownSample& s = flown[i];
+    const std::string name = "flown sample " + std::to_string(i);
+    if (!std::isfinite(s.t_s) || !usable(s.position_map) || !usable(s.velocity_map) ||
+        !s.q_map_base.coeffs().allFinite()) {
+      return wrong(name + " has a number that is not finite or beyond 1e6");
+    }
+    if (i > 0 && s.t_s < flown[i - 1].t_s) return wrong(name + " goes back in time");
+  }
+  return success();
+}
+
+bool empty(const Leg& leg) {
+  return leg.raw_path_map.empty() && leg.waypoints_map.empty() && leg.trajectory.pieces.empty() &&
+         leg.corridor.empty();
+}
+
+}  // namespace
+
+Status Flight::check() const {
+  if (auto status = limits.check(); !status) return wrong(status.error().message);
+  if (!(body_radius_m > 0.0 && body_radius_m <= kFarthest_m)) {
+    return wrong("the body's radius is not above zero");
+  }
+  if (auto status = check_grid(obstacles, "obstacles"); !status) return status;
+  if (auto status = check_grid(grown, "grown obstacles"); !status) return status;
+  if (auto status = check_flown(flown); !status) return status;
+  bool anything = !flown.empty() || obstacles != nullptr || grown != nullptr;
+  for (std::size_t i = 0; i < legs.size(); ++i) {
+    if (auto status = check_leg(legs[i], "leg " + std::to_string(i)); !status) return status;
+    anything = anything || !empty(legs[i]);
+  }
+  return anything ? success() : Status(wrong("there is no map, no path and no track in it"));
+}
+
+std::optional<FlatState> Flight::planned_at(double t_s) const {
+  const Leg* current = nullptr;
+  for (const Leg& leg : legs) {
+    if (leg.trajectory.pieces.empty() || leg.start_t_s > t_s) continue;
+    if (current == nullptr || leg.start_t_s >= current->start_t_s) current = &leg;
+  }
+  if (current == nullptr) return std::nullopt;
+  const double in_leg_s = std::min(t_s - current->start_t_s, current->trajectory.duration_s());
+  return current->trajectory.sample(in_leg_s);
+}
+
+}  // namespace goshawk::flight_report
