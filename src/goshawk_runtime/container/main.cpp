@@ -5,6 +5,7 @@
 #include <signal.h>
 
 #include <cstdio>
+#include <optional>
 #include <thread>
 
 #include "goshawk/runtime/component.hpp"
@@ -58,7 +59,27 @@ struct Running {
   std::thread thread;
 };
 
+// Every component is tried, so that the faults of all of them are said at once.
+Result<std::vector<const ComponentExport*>> load(const std::vector<Wanted>& wanted) {
+  std::vector<const ComponentExport*> exports;
+  std::optional<Error> fault;
+  for (const auto& w : wanted) {
+    auto component = load_component(w.component);
+    if (component) {
+      exports.push_back(*component);
+    } else if (fault) {
+      fault->message += "\n" + component.error().message;
+    } else {
+      fault = component.error();
+    }
+  }
+  if (fault) return *fault;
+  return exports;
+}
+
 int run(const std::vector<Wanted>& wanted, const RosArgs& ros_args, const sigset_t& signals) {
+  auto exports = load(wanted);
+  if (!exports) return complain(exports.error());
   auto options = ContextOptions::from_environment();
   if (!options) return complain(options.error());
   const std::string prefix = ros_args.node_namespace == "/" ? "" : ros_args.node_namespace;
@@ -67,18 +88,18 @@ int run(const std::vector<Wanted>& wanted, const RosArgs& ros_args, const sigset
   if (!context) return complain(context.error());
 
   std::vector<Running> running;
-  for (const auto& w : wanted) {
-    auto component = load_component(w.component);
-    if (!component) return complain(component.error());
+  int status = 0;
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
     Running r;
-    r.node = std::make_unique<Node>(**context, w.node, ros_args);
+    r.node = std::make_unique<Node>(**context, wanted[i].node, ros_args);
     try {
-      r.component = (*component)->create(*r.node);
+      r.component = (*exports)[i]->create(*r.node);
     } catch (const StartupFault& fault) {
-      return complain(fault.error());
+      status = complain(fault.error());
     }
     running.push_back(std::move(r));
   }
+  if (status != 0) return status;
   for (auto& r : running) {
     r.thread = std::thread([node = r.node.get()] { node->spin(); });
   }

@@ -8,6 +8,7 @@
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
 
+#include "any_type.hpp"
 #include "context_impl.hpp"
 
 namespace goshawk::runtime {
@@ -122,7 +123,11 @@ dds::Topic* Context::Impl::topic(const std::string& ros_name, const dds::TypeSup
     if (found->get_type_name() != type.get_type_name()) return nullptr;
     return static_cast<dds::Topic*>(found);
   }
-  type.register_type(participant);
+  dds::TypeSupport any = participant->find_type(type.get_type_name());
+  if (any.empty()) {
+    any.reset(new AnyType(type.get_type_name(), type->m_typeSize));
+    any.register_type(participant);
+  }
   return participant->create_topic(name, type.get_type_name(), dds::TOPIC_QOS_DEFAULT);
 }
 

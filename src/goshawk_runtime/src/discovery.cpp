@@ -54,8 +54,9 @@ void DiscoveryListener::on_participant_discovery(dds::DomainParticipant*,
   participants_[key] = {key, info.info.m_participantName.to_string(), nodes_in(user_data)};
 }
 
-void DiscoveryListener::on_publisher_discovery(dds::DomainParticipant*,
+void DiscoveryListener::on_publisher_discovery(dds::DomainParticipant* self,
                                                rtps::WriterDiscoveryInfo&& info) {
+  if (info.info.guid().guidPrefix == self->guid().guidPrefix) return;
   const std::lock_guard lock(mutex_);
   const std::string key = text(info.info.guid());
   if (info.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER) {
@@ -65,8 +66,9 @@ void DiscoveryListener::on_publisher_discovery(dds::DomainParticipant*,
   }
 }
 
-void DiscoveryListener::on_subscriber_discovery(dds::DomainParticipant*,
+void DiscoveryListener::on_subscriber_discovery(dds::DomainParticipant* self,
                                                 rtps::ReaderDiscoveryInfo&& info) {
+  if (info.info.guid().guidPrefix == self->guid().guidPrefix) return;
   const std::lock_guard lock(mutex_);
   const std::string key = text(info.info.guid());
   if (info.status == rtps::ReaderDiscoveryInfo::REMOVED_READER) {

@@ -5,6 +5,8 @@
 
 #include <atomic>
 #include <chrono>
+#include <cmath>
+#include <deque>
 #include <fastdds/dds/core/condition/GuardCondition.hpp>
 #include <fastdds/dds/core/condition/WaitSet.hpp>
 #include <fastdds/dds/publisher/DataWriter.hpp>
@@ -12,6 +14,7 @@
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
 #include <fastrtps/types/TypesBase.h>
 
+#include "any_type.hpp"
 #include "context_impl.hpp"
 #include "message_type_impl.hpp"
 
@@ -20,21 +23,48 @@ namespace goshawk::runtime {
 using Steady = std::chrono::steady_clock;
 using eprosima::fastrtps::types::ReturnCode_t;
 
+namespace {
+
+constexpr double kLongest_s = 1e6;  // beyond, a wait counts as for ever
+// A flood on one topic must not starve timers and the other topics of the node.
+constexpr int kMostAtOnce = 64;
+
+double clamped(double timeout_s) {
+  return timeout_s > 0.0 ? std::min(timeout_s, kLongest_s) : 0.0;  // NaN: no wait
+}
+
+Steady::duration to_steady(double time_s) {
+  return std::chrono::duration_cast<Steady::duration>(
+      std::chrono::duration<double>(clamped(time_s)));
+}
+
+eprosima::fastrtps::Duration_t to_duration(double time_s) {
+  return eprosima::fastrtps::Duration_t(static_cast<long double>(clamped(time_s)));
+}
+
+}  // namespace
+
 namespace detail {
 
 class Writer {
  public:
-  Writer(dds::Publisher* publisher, dds::DataWriter* writer, std::string topic)
-      : publisher_(publisher), writer_(writer), topic_(std::move(topic)) {}
+  Writer(dds::Publisher* publisher, dds::DataWriter* writer, dds::TypeSupport type,
+         std::string topic)
+      : publisher_(publisher), writer_(writer), type_(std::move(type)), topic_(std::move(topic)) {}
   ~Writer() { publisher_->delete_datawriter(writer_); }
   Writer(const Writer&) = delete;
   Writer& operator=(const Writer&) = delete;
 
   Status publish(const void* message) {
-    if (writer_->write(const_cast<void*>(message))) return success();
+    Sample sample{type_.get(), const_cast<void*>(message)};
+    if (writer_->write(&sample)) return success();
     return fail(ErrorCode::io_failed,
                 "the middleware did not take a message on " + topic_ + ": is it too large, or does "
                 "a reliable reader hold the writer back?");
+  }
+
+  bool wait_acknowledged(double timeout_s) {
+    return writer_->wait_for_acknowledgments(to_duration(timeout_s)) == ReturnCode_t::RETCODE_OK;
   }
 
   int matched() const {
@@ -46,6 +76,7 @@ class Writer {
  private:
   dds::Publisher* publisher_;
   dds::DataWriter* writer_;
+  dds::TypeSupport type_;
   std::string topic_;
 };
 
@@ -53,6 +84,9 @@ class Writer {
 
 Status RawPublisher::publish_raw(const void* message) const { return writer_->publish(message); }
 int RawPublisher::matched() const { return writer_->matched(); }
+bool RawPublisher::wait_acknowledged(double timeout_s) const {
+  return writer_->wait_acknowledged(timeout_s);
+}
 
 namespace {
 
@@ -75,7 +109,7 @@ struct Subscription {
   dds::DataReader* reader = nullptr;
   std::string topic;
   dds::TypeSupport type;
-  void* sample = nullptr;  // one object, used again for every message
+  void* object = nullptr;  // one, used again for every message
   Node::RawCallback callback;
 };
 
@@ -94,7 +128,7 @@ struct Node::Impl {
     for (auto& s : subscriptions) {
       wait_set.detach_condition(s->reader->get_statuscondition());
       context.subscriber->delete_datareader(s->reader);
-      s->type.delete_data(s->sample);
+      s->type.delete_data(s->object);
     }
   }
 
@@ -104,45 +138,65 @@ struct Node::Impl {
   dds::WaitSet wait_set;
   dds::ConditionSeq active;
   std::vector<std::unique_ptr<Subscription>> subscriptions;
-  std::vector<Timer> timers;
+  std::deque<Timer> timers;  // a callback may add one: elements stay where they are
+  bool more = false;         // the last pass left messages behind
 
   void wait(Steady::time_point until);
-  void run_due_timers();
-  void take_all(const Node& node, Subscription& subscription);
+  void run_due_timers(const Node& node);
+  /// @return whether messages are left
+  bool take_some(const Node& node, Subscription& subscription);
+  /// An exception is a bug of the component: said, then left to end the process.
+  template <typename Callback, typename... Arguments>
+  void call(const Node& node, const std::string& what, const Callback& callback,
+            const Arguments&... arguments);
 };
 
 void Node::Impl::wait(Steady::time_point until) {
   for (const auto& timer : timers) until = std::min(until, timer.next);
-  const auto left = std::max(Steady::duration::zero(), until - Steady::now());
-  const auto ns = std::chrono::duration_cast<std::chrono::nanoseconds>(left).count();
-  wait_set.wait(active, eprosima::fastrtps::Duration_t(int(ns / 1'000'000'000), unsigned(ns % 1'000'000'000)));
+  const std::chrono::duration<double> left = until - Steady::now();
+  wait_set.wait(active, to_duration(more ? 0.0 : left.count()));
 }
 
-void Node::Impl::run_due_timers() {
-  for (auto& timer : timers) {
+void Node::Impl::run_due_timers(const Node& node) {
+  // By index: a callback may add a timer.
+  for (std::size_t i = 0; i < timers.size() && !stopping; ++i) {
+    auto& timer = timers[i];
     const auto now = Steady::now();
     if (now < timer.next) continue;
     timer.next += timer.period;
     if (timer.next < now) timer.next = now + timer.period;
-    timer.callback();
+    call(node, "a timer", timer.callback);
   }
 }
 
-void Node::Impl::take_all(const Node& node, Subscription& s) {
+template <typename Callback, typename... Arguments>
+void Node::Impl::call(const Node& node, const std::string& what, const Callback& callback,
+                      const Arguments&... arguments) {
+  try {
+    callback(arguments...);
+  } catch (const std::exception& e) {
+    node.log_->critical("the callback of {} threw: {}. This is a bug; the process ends", what,
+                        e.what());
+    throw;
+  }
+}
+
+bool Node::Impl::take_some(const Node& node, Subscription& s) {
   dds::SampleInfo info;
-  for (;;) {
-    const auto code = s.reader->take_next_sample(s.sample, &info);
-    if (code == ReturnCode_t::RETCODE_NO_DATA) return;
-    if (code != ReturnCode_t::RETCODE_OK) {
+  Sample sample{s.type.get(), s.object};
+  for (int i = 0; i < kMostAtOnce; ++i) {
+    sample.decoded = false;
+    if (s.reader->take_next_sample(&sample, &info) != ReturnCode_t::RETCODE_OK) return false;
+    if (!info.valid_data) continue;
+    if (!sample.decoded) {
       node.log_->warn("a message on {} could not be decoded and was dropped: does its sender use "
                       "the same IDL?", s.topic);
-      if (s.reader->get_unread_count() == 0) return;
       continue;
     }
-    if (!info.valid_data) continue;
-    s.callback(s.sample, {node.now_ns()});
-    if (stopping) return;
+    call(node, s.topic, s.callback, s.object, MessageInfo{node.now_ns()});
+    if (stopping) return false;
   }
+  return true;
 }
 
 Node::Node(Context& context, std::string name, RosArgs args, std::shared_ptr<const Clock> clock)
@@ -182,7 +236,7 @@ std::shared_ptr<detail::Writer> Node::make_writer(std::string_view topic, const 
                             name_ + " cannot write " + name + " as " + type.name() +
                                 ": another type uses this topic here, or its profile is wrong"));
   }
-  return std::make_shared<detail::Writer>(publisher, writer, name);
+  return std::make_shared<detail::Writer>(publisher, writer, type.impl().support, name);
 }
 
 void Node::subscribe_raw(std::string_view topic, const MessageType& type, Qos qos,
@@ -206,7 +260,7 @@ void Node::subscribe_raw(std::string_view topic, const MessageType& type, Qos qo
   subscription->reader = reader;
   subscription->topic = name;
   subscription->type = type.impl().support;
-  subscription->sample = subscription->type.create_data();
+  subscription->object = subscription->type.create_data();
   subscription->callback = std::move(callback);
   auto& condition = reader->get_statuscondition();
   condition.set_enabled_statuses(dds::StatusMask::data_available());
@@ -215,23 +269,26 @@ void Node::subscribe_raw(std::string_view topic, const MessageType& type, Qos qo
 }
 
 void Node::every(double period_s, std::function<void()> callback) {
-  const auto period = std::chrono::duration_cast<Steady::duration>(
-      std::chrono::duration<double>(period_s));
+  if (!(period_s > 0.0) || !std::isfinite(period_s)) {
+    throw std::invalid_argument("Node::every: a period must be above 0 s");
+  }
+  // Not below 1 ns: a period of zero ticks would never let go of the loop.
+  const auto period = std::max(Steady::duration{1}, to_steady(period_s));
   impl_->timers.push_back({period, Steady::now() + period, std::move(callback)});
 }
 
 void Node::spin() {
-  while (!impl_->stopping) spin_some(3600.0);
+  while (!impl_->stopping) spin_some(kLongest_s);
 }
 
 void Node::spin_some(double timeout_s) {
-  impl_->wait(Steady::now() + std::chrono::duration_cast<Steady::duration>(
-                                  std::chrono::duration<double>(timeout_s)));
+  impl_->wait(Steady::now() + to_steady(timeout_s));
   if (impl_->stopping) return;
-  impl_->run_due_timers();
+  impl_->more = false;
+  impl_->run_due_timers(*this);
   // By index: a callback may subscribe.
   for (std::size_t i = 0; i < impl_->subscriptions.size() && !impl_->stopping; ++i) {
-    impl_->take_all(*this, *impl_->subscriptions[i]);
+    if (impl_->take_some(*this, *impl_->subscriptions[i])) impl_->more = true;
   }
 }
 

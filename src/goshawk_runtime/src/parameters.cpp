@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
 #include <numeric>
+#include <set>
 
 namespace goshawk::runtime {
 namespace {
@@ -32,14 +34,17 @@ Status add_section(const YAML::Node& section, const std::string& where, Paramete
                 where + " holds no map ros__parameters: write\n  NODE:\n    ros__parameters:\n"
                         "      NAME: VALUE");
   }
+  std::set<std::string> seen;
   for (const auto& pair : parameters) {
     const std::string name = pair.first.as<std::string>();
-    if (!pair.second.IsScalar()) {
-      return fail(ErrorCode::invalid_parameter,
-                  where + ": " + name + " is not a single value: lists and maps have no meaning "
-                                        "here");
+    ParameterSource::Entry entry{"", where, pair.second.Tag() == "!", ""};
+    if (pair.second.IsScalar()) {
+      entry.text = pair.second.Scalar();
+    } else {
+      entry.fault = "is not a single value: empty entries, lists and maps have no meaning here";
     }
-    source.set(name, {pair.second.Scalar(), where, pair.second.Tag() == "!"});
+    if (!seen.insert(name).second) entry.fault = "stands there twice: remove one of them";
+    source.set(name, std::move(entry));
   }
   return success();
 }
@@ -51,6 +56,9 @@ Status ParameterSource::add_file(const std::string& path, std::string_view node_
   std::string full(node_namespace);
   if (!full.ends_with('/')) full += '/';
   full += node_name;
+  if (std::error_code ignored; std::filesystem::is_directory(path, ignored)) {
+    return fail(ErrorCode::io_failed, path + " is a folder, not a file of parameters");
+  }
   try {
     const YAML::Node file = YAML::LoadFile(path);
     if (file.IsNull()) return success();
@@ -96,7 +104,8 @@ template <typename Number>
 std::string parse_number(const ParameterSource::Entry& entry, Number& value, const char* what) {
   const char* first = entry.text.data();
   const char* last = first + entry.text.size();
-  if (first != last && *first == '+') ++first;
+  // "+5" is a number, but from_chars knows no plus; "+-5" is none.
+  if (last - first > 1 && *first == '+' && first[1] != '-') ++first;
   const auto [end, error] = std::from_chars(first, last, value);
   if (entry.quoted || error != std::errc{} || end != last) return std::string("is not ") + what;
   return "";
@@ -116,7 +125,7 @@ std::string parse(const ParameterSource::Entry& entry, std::string& value) {
 }
 
 std::string range_fault(double value, const Range& range) {
-  if (range.contains(value)) return "";
+  if (range.contains(value) && std::isfinite(value)) return "";
   return "is out of range: it must be " + to_text(range);
 }
 

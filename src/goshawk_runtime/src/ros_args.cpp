@@ -15,6 +15,12 @@ Result<std::pair<std::string, std::string>> split(const std::string& text, const
   return std::pair{text.substr(0, at), text.substr(at + 2)};
 }
 
+// -p name:="'5'" is the string 5, as in a YAML file.
+bool is_quoted(const std::string& value) {
+  return value.size() >= 2 && (value.front() == '"' || value.front() == '\'') &&
+         value.back() == value.front();
+}
+
 Status add_remap(RosArgs& args, const std::string& text) {
   auto rule = split(text, "remapping");
   if (!rule) return rule.error();
@@ -25,7 +31,9 @@ Status add_remap(RosArgs& args, const std::string& text) {
   }
   if (from == "__node" || from == "__name") {
     args.node_name = to;
-    return success();
+    if (to.find('/') == std::string::npos) return check_topic_name(to);
+    return fail(ErrorCode::invalid_input,
+                "node name '" + to + "' holds a '/': set the namespace with -r __ns:=");
   }
   for (const auto& name : {from, to}) {
     if (auto status = check_topic_name(name); !status) return status;
@@ -71,19 +79,21 @@ Status take_option(RosArgs& args, const std::string& option, const std::string& 
 
 Result<RosArgs> RosArgs::extract(std::vector<std::string>& arguments) {
   RosArgs args;
-  const auto begin = std::ranges::find(arguments, "--ros-args");
-  auto it = begin;
-  if (it != arguments.end()) ++it;
-  for (; it != arguments.end() && *it != "--"; ++it) {
-    const std::string option = *it;
-    if (++it == arguments.end()) {
-      return fail(ErrorCode::invalid_input, "'" + option + "' wants a value behind it");
+  // ROS allows several parts, each up to its "--".
+  for (;;) {
+    const auto begin = std::ranges::find(arguments, "--ros-args");
+    if (begin == arguments.end()) return args;
+    auto it = begin + 1;
+    for (; it != arguments.end() && *it != "--" && *it != "--ros-args"; ++it) {
+      const std::string option = *it;
+      if (++it == arguments.end()) {
+        return fail(ErrorCode::invalid_input, "'" + option + "' wants a value behind it");
+      }
+      if (auto status = take_option(args, option, *it); !status) return status.error();
     }
-    if (auto status = take_option(args, option, *it); !status) return status.error();
+    if (it != arguments.end() && *it == "--") ++it;
+    arguments.erase(begin, it);
   }
-  if (it != arguments.end()) ++it;
-  arguments.erase(begin, it);
-  return args;
 }
 
 Result<ParameterSource> RosArgs::parameters_of(std::string_view name) const {
@@ -92,7 +102,10 @@ Result<ParameterSource> RosArgs::parameters_of(std::string_view name) const {
     if (auto status = source.add_file(file, name, node_namespace); !status) return status.error();
   }
   for (const auto& o : overrides) {
-    if (o.node.empty() || o.node == name) source.set(o.name, {o.value, "-p", false});
+    if (!o.node.empty() && o.node != name) continue;
+    const bool quoted = is_quoted(o.value);
+    const std::string text = quoted ? o.value.substr(1, o.value.size() - 2) : o.value;
+    source.set(o.name, {text, "-p", quoted, ""});
   }
   return source;
 }

@@ -48,6 +48,8 @@ class RawPublisher {
   Status publish_raw(const void* message) const;
   /// Readers that claim to listen. No proof that they do (fastdds.md), good enough to wait for.
   int matched() const;
+  /// @return whether every reliable reader that is matched has the messages, within timeout_s
+  bool wait_acknowledged(double timeout_s) const;
 
  private:
   std::shared_ptr<detail::Writer> writer_;

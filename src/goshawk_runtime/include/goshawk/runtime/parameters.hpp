@@ -20,6 +20,7 @@ class ParameterSource {
     std::string text;    // as written
     std::string origin;  // file or option that set it, for the sentence of a fault
     bool quoted = false; // a quoted YAML scalar is a string, even when it looks like a number
+    std::string fault;   // why it cannot be a value at all; empty: it can
   };
 
   /// Adds the sections of a ROS style file that are meant for this node: `/**`, the node's name
@@ -82,7 +83,8 @@ class Reader {
     const auto entry = source_.entries().find(name);
     if (entry == source_.entries().end()) return;
     T parsed = value;
-    std::string fault = parse(entry->second, parsed);
+    std::string fault = entry->second.fault;
+    if (fault.empty()) fault = parse(entry->second, parsed);
     if (fault.empty()) fault = range_fault(parsed, allowed);
     if (fault.empty()) {
       value = parsed;

@@ -1,0 +1,181 @@
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "goshawk/introspection/codec.hpp"
+
+namespace goshawk::introspection {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Bytes = std::span<const unsigned char>;
+
+constexpr std::size_t kEncapsulation = 4;  // [byte] in front; alignment counts from behind it
+constexpr std::size_t kMostPadding = 3;    // [byte] that a sender may add at the end
+
+/// Walks the payload once; the first fault ends the walk.
+class Decoder {
+ public:
+  Decoder(Bytes payload, bool big_endian)
+      : payload_(payload), swap_(big_endian != (std::endian::native == std::endian::big)) {}
+
+  bool read(const Type& type, Json& out) {
+    out = Json::object();
+    for (const auto& field : type.fields) {
+      Json value;
+      if (!read(field, value)) {
+        path_ = std::string(field.name) + (path_.empty() || path_[0] == '[' ? "" : ".") + path_;
+        return false;
+      }
+      out.emplace(std::string(field.name), std::move(value));
+    }
+    return true;
+  }
+
+  std::size_t left() const { return payload_.size() - at_; }
+  Error error(const Type& type) const {
+    return fail(ErrorCode::invalid_input, "these bytes are no " + std::string(type.name) + ": " +
+                                              path_ + (path_.empty() ? "" : " ") + fault_);
+  }
+  void set_fault(std::string fault) { fault_ = std::move(fault); }
+
+ private:
+  bool read(const Field& field, Json& out) {
+    if (field.arity == Arity::single) return read_one(field, out);
+    std::uint32_t count = field.size;
+    if (field.arity == Arity::sequence && !read_count(field, count)) return false;
+    out = Json::array();
+    out.get_ref<Json::array_t&>().reserve(count);  // read_count made sure that they can be there
+    for (std::uint32_t i = 0; i < count; ++i) {
+      Json element;
+      if (!read_one(field, element)) {
+        path_ = "[" + std::to_string(i) + "]" + (path_.empty() ? "" : ".") + path_;
+        return false;
+      }
+      out.push_back(std::move(element));
+    }
+    return true;
+  }
+
+  bool read_count(const Field& field, std::uint32_t& count) {
+    if (!primitive(count)) return false;
+    const std::uint32_t least = field.kind == Kind::structure
+                                    ? all_types()[std::size_t(field.type)].least_size
+                                    : size_of(field.kind);
+    if (count <= left() / least) return true;
+    fault_ = "claims " + std::to_string(count) + " elements, but only " + std::to_string(left()) +
+             " bytes are left";
+    return false;
+  }
+
+  bool read_one(const Field& field, Json& out) {
+    switch (field.kind) {
+      case Kind::boolean: return read_bool(out);
+      case Kind::int8: return read_number<std::int8_t>(out);
+      case Kind::uint8: return read_number<std::uint8_t>(out);
+      case Kind::int16: return read_number<std::int16_t>(out);
+      case Kind::uint16: return read_number<std::uint16_t>(out);
+      case Kind::int32: return read_number<std::int32_t>(out);
+      case Kind::uint32: return read_number<std::uint32_t>(out);
+      case Kind::int64: return read_number<std::int64_t>(out);
+      case Kind::uint64: return read_number<std::uint64_t>(out);
+      case Kind::float32: return read_number<float>(out);
+      case Kind::float64: return read_number<double>(out);
+      case Kind::string: return read_string(out);
+      case Kind::structure: return read(all_types()[std::size_t(field.type)], out);
+    }
+    throw std::logic_error("cdr_to_json: unknown kind");
+  }
+
+  template <typename T>
+  bool primitive(T& value) {
+    const std::size_t aligned = (at_ + sizeof(T) - 1) / sizeof(T) * sizeof(T);
+    if (aligned > payload_.size() || payload_.size() - aligned < sizeof(T)) {
+      fault_ = "is cut off: the message ends after " + std::to_string(payload_.size()) + " bytes";
+      return false;
+    }
+    unsigned char raw[sizeof(T)];
+    std::memcpy(raw, payload_.data() + aligned, sizeof(T));
+    if (swap_) std::reverse(raw, raw + sizeof(T));
+    std::memcpy(&value, raw, sizeof(T));
+    at_ = aligned + sizeof(T);
+    return true;
+  }
+
+  template <typename T>
+  bool read_number(Json& out) {
+    T value;
+    if (!primitive(value)) return false;
+    if constexpr (std::is_floating_point_v<T>) {
+      if (std::isnan(value)) out = "nan";
+      else if (std::isinf(value)) out = value > 0 ? "inf" : "-inf";
+      else out = double(value);
+    } else {
+      out = value;
+    }
+    return true;
+  }
+
+  bool read_bool(Json& out) {
+    std::uint8_t value;
+    if (!primitive(value)) return false;
+    if (value > 1) {
+      fault_ = "is a bool of value " + std::to_string(value) + ": it must be 0 or 1";
+      return false;
+    }
+    out = value == 1;
+    return true;
+  }
+
+  // Length with the closing zero, then the characters; some senders write an empty one as 0.
+  bool read_string(Json& out) {
+    std::uint32_t length;
+    if (!primitive(length)) return false;
+    if (length > left()) {
+      fault_ = "claims " + std::to_string(length) + " characters, but only " +
+               std::to_string(left()) + " bytes are left";
+      return false;
+    }
+    const char* text = reinterpret_cast<const char*>(payload_.data() + at_);
+    at_ += length;
+    if (length > 0 && text[length - 1] == '\0') --length;
+    out = std::string(text, length);
+    return true;
+  }
+
+  Bytes payload_;
+  bool swap_;
+  std::size_t at_ = 0;
+  std::string path_;   // to the field at fault, outermost first
+  std::string fault_;  // empty: none
+};
+
+// @return whether the payload is big-endian; none where it is not plain XCDR1
+std::optional<bool> byte_order(Bytes bytes) {
+  if (bytes.size() < kEncapsulation || bytes[0] != 0 || bytes[1] > 1) return std::nullopt;
+  return bytes[1] == 0;
+}
+
+}  // namespace
+
+Result<Json> cdr_to_json(const Type& type, Bytes bytes) {
+  const auto big_endian = byte_order(bytes);
+  if (!big_endian) {
+    return fail(ErrorCode::invalid_input,
+                "these bytes are no " + std::string(type.name) +
+                    ": they do not begin with the encapsulation of plain CDR (0, 0 or 1, 0, 0)");
+  }
+  Decoder decoder(bytes.subspan(kEncapsulation), *big_endian);
+  Json json;
+  if (!decoder.read(type, json)) return decoder.error(type);
+  if (decoder.left() > kMostPadding) {
+    decoder.set_fault(std::to_string(decoder.left()) + " bytes are left over");
+    return decoder.error(type);
+  }
+  return json;
+}
+
+}  // namespace goshawk::introspection
