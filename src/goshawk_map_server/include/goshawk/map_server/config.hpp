@@ -1,0 +1,72 @@
+#pragma once
+
+#include <concepts>
+#include <string>
+#include <type_traits>
+
+#include "goshawk/core/parameter.hpp"
+#include "goshawk/core/result.hpp"
+#include "goshawk/map_server/map_file.hpp"
+#include "goshawk/map_server/voxel_map.hpp"
+
+namespace goshawk::map_server {
+
+/// The map server's parameters; the defaults are valid.
+struct Config {
+  std::string map_file = "";
+  std::string unknown = "occupied";
+  double radius_m = 0.15;
+  double margin_m = 0.05;
+  double resolution_m = 0.2;
+  std::string cloud_meaning = "map";
+  double max_range_m = 30.0;
+  bool use_box = false;
+  double box_x_min_m = 0.0;
+  double box_y_min_m = 0.0;
+  double box_z_min_m = 0.0;
+  double box_x_max_m = 10.0;
+  double box_y_max_m = 10.0;
+  double box_z_max_m = 4.0;
+  int max_voxels = 1'000'000'000;
+};
+
+template <typename Self, typename Visitor>
+  requires std::same_as<std::remove_const_t<Self>, Config>
+void describe(Self& c, Visitor&& visit) {
+  visit("map_file", c.map_file, "",
+        "map to load (.bt, .ot, .pcd, .ply, .3dmap); empty: the box begins as unknown space",
+        Anything{});
+  visit("unknown", c.unknown, "",
+        "space that was not measured: occupied (an obstacle that grows), blocked (an obstacle "
+        "that does not grow) or free",
+        OneOf{{"occupied", "blocked", "free"}});
+  visit("radius_m", c.radius_m, "m", "radius of the ball around the vehicle", Range{0.0, 100.0});
+  visit("margin_m", c.margin_m, "m", "added to the radius: covers the tracking error",
+        Range{0.0, 100.0});
+  visit("resolution_m", c.resolution_m, "m",
+        "voxel edge for clouds, .3dmap files and live scans; OctoMap files bring their own",
+        Range::positive(100.0));
+  visit("cloud_meaning", c.cloud_meaning, "",
+        "what a cloud file says of the space between its points: map (free), points (nothing) or "
+        "scan (the rays from the origin are free)",
+        OneOf{{"map", "points", "scan"}});
+  visit("max_range_m", c.max_range_m, "m", "longest ray of a scan that may hit something",
+        Range::positive(1000.0));
+  visit("use_box", c.use_box, "", "cut the map to the box; needed where map_file is empty",
+        Anything{});
+  visit("box_x_min_m", c.box_x_min_m, "m", "lower corner of the box", Anything{});
+  visit("box_y_min_m", c.box_y_min_m, "m", "lower corner of the box", Anything{});
+  visit("box_z_min_m", c.box_z_min_m, "m", "lower corner of the box", Anything{});
+  visit("box_x_max_m", c.box_x_max_m, "m", "upper corner of the box", Anything{});
+  visit("box_y_max_m", c.box_y_max_m, "m", "upper corner of the box", Anything{});
+  visit("box_z_max_m", c.box_z_max_m, "m", "upper corner of the box", Anything{});
+  visit("max_voxels", c.max_voxels, "", "larger maps are refused", Range{1.0, 2147483647.0});
+}
+
+/// The config in the terms of the functions that do the work. @pre values as describe() allows;
+/// unknown words throw std::invalid_argument
+LoadOptions load_options(const Config& config);
+VoxelizeOptions voxelize_options(const Config& config);
+Growth growth(const Config& config);
+
+}  // namespace goshawk::map_server

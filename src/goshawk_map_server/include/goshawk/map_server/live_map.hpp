@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "goshawk/map_server/grid_update.hpp"
+#include "goshawk/map_server/map_file.hpp"
+#include "goshawk/map_server/voxel_map.hpp"
+
+namespace goshawk::map_server {
+
+/// The tree, its bits and the grown grid, kept in step while scans come in. The grid's box never
+/// changes: what a scan tells of the space outside stays in the tree alone.
+class LiveMap {
+ public:
+  /// @return as voxelize() and make_voxel_grid(); the grid has version 1
+  static Result<LiveMap> from_source(MapSource source, const VoxelizeOptions& options,
+                                     const Growth& growth);
+
+  /// A map that knows nothing yet. @param box [m] what the grid covers
+  /// @return invalid_parameter, map_too_large
+  static Result<LiveMap> unknown_space(const Box& box, double resolution_m, const Growth& growth,
+                                       std::int64_t max_voxels = 1'000'000'000);
+
+  const VoxelGrid& grid() const { return grid_; }
+  const RawVoxels& raw() const { return raw_; }
+  const Growth& growth() const { return growth_; }
+  const octomap::OcTree& tree() const { return *tree_; }
+
+  struct ScanResult {
+    GridUpdate update;             // brings grid() of before to grid() of now; may be empty
+    std::int64_t points_left_out = 0;  // not finite
+  };
+
+  /// Inserts a scan and grows anew around what changed. The version rises by one, also where no
+  /// brick changed.
+  /// @param points_map, sensor_origin_map [m] frame map @param max_range_m [m] longer rays clear
+  /// space up to there and hit nothing
+  /// @return invalid_input, map_too_large; then nothing was inserted
+  Result<ScanResult> insert_scan(std::span<const Vec3> points_map, const Vec3& sensor_origin_map,
+                                 double max_range_m);
+
+ private:
+  LiveMap(OcTreePtr tree, RawVoxels raw, VoxelGrid grid, const Growth& growth);
+
+  OcTreePtr tree_;
+  RawVoxels raw_;
+  VoxelGrid grid_;
+  Growth growth_;
+};
+
+}  // namespace goshawk::map_server

@@ -1,0 +1,122 @@
+#include "goshawk/map_server/octree.hpp"
+
+#include <octomap/OcTree.h>
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "bt_encoder.hpp"
+#include "text.hpp"
+
+namespace goshawk::map_server {
+namespace {
+
+constexpr double kHalfKeys = 32768.0;  // an OcTree spans 65536 voxels, the origin in the middle
+
+Error too_large(const std::string& what) { return fail(ErrorCode::map_too_large, what); }
+
+}  // namespace
+
+Result<GridGeometry> raster_of(const Box& box, double resolution_m, std::int64_t max_voxels) {
+  if (!(std::isfinite(resolution_m) && resolution_m > 0.0)) {
+    return fail(ErrorCode::invalid_parameter,
+                "the map's resolution is " + std::to_string(resolution_m) +
+                    " m: it must be finite and above zero");
+  }
+  const Vec3 lower = box.lower_map / resolution_m;
+  const Vec3 upper = box.upper_map / resolution_m;
+  if (!is_finite(lower) || !is_finite(upper) || !(upper.array() > lower.array()).all()) {
+    return fail(ErrorCode::invalid_parameter,
+                "the map's box from " + to_text(box.lower_map) + " to " + to_text(box.upper_map) +
+                    " m holds nothing: the upper corner must lie above the lower one, both finite");
+  }
+  if (lower.minCoeff() < -kHalfKeys || upper.maxCoeff() > kHalfKeys) {
+    return too_large("the map reaches from " + to_text(box.lower_map) + " to " +
+                     to_text(box.upper_map) + " m, beyond OctoMap's 32768 voxels of " +
+                     std::to_string(resolution_m) +
+                     " m from the origin: give a smaller box or a coarser resolution");
+  }
+  // A corner on the raster, but for rounding, must not add a layer of voxels.
+  const Eigen::Array3d lo = (lower.array() + 1e-6).floor();
+  const Eigen::Array3d hi = (upper.array() - 1e-6).ceil().max(lo + 1.0);
+  GridGeometry geometry;
+  geometry.resolution_m = resolution_m;
+  geometry.origin_map = lo.matrix() * resolution_m;
+  geometry.size = {int(hi.x() - lo.x()), int(hi.y() - lo.y()), int(hi.z() - lo.z())};
+  const Index3 n = geometry.size;
+  if (std::int64_t{n.x} * n.y > max_voxels / n.z) {
+    return too_large("the map has " + to_text(n) + " voxels, more than the limit of " +
+                     std::to_string(max_voxels) +
+                     ": give a smaller box, a coarser resolution or a higher limit");
+  }
+  return geometry;
+}
+
+Result<OcTreePtr> make_octree(const GridGeometry& geometry, const BitGrid& occupied,
+                              const BitGrid& known) {
+  if (auto status = geometry.check(); !status) return status.error();
+  if (!(occupied.size() == geometry.size) ||
+      (!known.empty() && !(known.size() == geometry.size))) {
+    return fail(ErrorCode::invalid_input, "the bits do not have the size of the geometry");
+  }
+  const Vec3 steps = geometry.origin_map / geometry.resolution_m;
+  if (steps.cwiseAbs().maxCoeff() > kHalfKeys) {
+    return too_large("the map's origin " + to_text(geometry.origin_map) +
+                     " m is out of OctoMap's reach at this resolution");
+  }
+  const Vec3 rounded = steps.array().round().matrix();
+  if ((steps - rounded).cwiseAbs().maxCoeff() > 1e-3) {
+    return fail(ErrorCode::invalid_parameter,
+                "the map's origin " + to_text(geometry.origin_map) +
+                    " m must be a multiple of its resolution to be kept in an OctoMap file");
+  }
+  const Vec3 upper = rounded + Vec3(geometry.size.x, geometry.size.y, geometry.size.z);
+  if (upper.maxCoeff() > kHalfKeys) {
+    return too_large("the map reaches beyond OctoMap's 32768 voxels from the origin");
+  }
+  const auto key = [&](double v) { return int(v + kHalfKeys); };
+  const std::string payload = encode_bt(
+      {key(rounded.x()), key(rounded.y()), key(rounded.z())}, occupied, known);
+  if (payload.empty()) return fail(ErrorCode::map_empty, "the map knows of no voxel");
+  auto tree = std::make_shared<octomap::OcTree>(geometry.resolution_m);
+  MemoryStream stream(payload);
+  tree->readBinaryData(stream);
+  return tree;
+}
+
+Status save_octree(const octomap::OcTree& tree, const std::string& path) {
+  const std::string ending = lower_case_ending(path);
+  if (ending != "bt" && ending != "ot") {
+    return fail(ErrorCode::map_unreadable,
+                "cannot write a map to '" + path + "': its name must end in .bt or .ot");
+  }
+  const std::string unfinished = path + ".part";
+  std::ofstream file(unfinished, std::ios::binary);
+  const bool written = file && (ending == "bt" ? tree.writeBinaryConst(file) : tree.write(file));
+  file.close();
+  std::error_code error;
+  if (written && file) std::filesystem::rename(unfinished, path, error);
+  if (written && file && !error) return success();
+  std::remove(unfinished.c_str());
+  return fail(ErrorCode::io_failed,
+              "cannot write '" + path + "': check that its folder exists, may be written to and "
+              "has space left");
+}
+
+Status save_voxels(const GridGeometry& geometry, const BitGrid& occupied, const BitGrid& known,
+                   const std::string& path) {
+  const auto tree = make_octree(geometry, occupied, known);
+  if (!tree) return tree.error();
+  return save_octree(**tree, path);
+}
+
+std::string binary_payload(const octomap::OcTree& tree) {
+  std::ostringstream stream;
+  if (tree.size() > 0) tree.writeBinaryData(stream);
+  return std::move(stream).str();
+}
+
+}  // namespace goshawk::map_server

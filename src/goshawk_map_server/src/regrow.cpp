@@ -1,0 +1,133 @@
+#include "regrow.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "goshawk/core/inflation.hpp"
+#include "growth.hpp"
+
+namespace goshawk::map_server {
+namespace {
+
+using Word = BitGrid::Word;
+
+// Grid words [word0, word0 + ...) of the rows y0..y1, z0..z1: a brick and all that grows into it.
+struct Window {
+  Index3 lower;  // voxels, lower.x a multiple of 64
+  Index3 size;
+};
+
+Window window_around(Index3 brick, int reach, Index3 grid) {
+  const auto lower = [&](int b, int side) { return std::max(0, b * side - reach); };
+  const auto upper = [&](int b, int side, int n) { return std::min(n, (b + 1) * side + reach); };
+  const Index3 lo{lower(brick.x, Brick::kSizeX) & ~63, lower(brick.y, Brick::kSizeY),
+                  lower(brick.z, Brick::kSizeZ)};
+  const int x1 = std::min(grid.x, (upper(brick.x, Brick::kSizeX, grid.x) + 63) & ~63);
+  return {lo, Index3{x1, upper(brick.y, Brick::kSizeY, grid.y),
+                     upper(brick.z, Brick::kSizeZ, grid.z)} - lo};
+}
+
+BitGrid growing_bits(const RawVoxels& raw, const Window& window, UnknownPolicy policy) {
+  BitGrid local(window.size, true);
+  const std::size_t word0 = std::size_t(window.lower.x) / 64;
+  for (int z = 0; z < window.size.z; ++z) {
+    for (int y = 0; y < window.size.y; ++y) {
+      const Word* occupied = raw.occupied.row(y + window.lower.y, z + window.lower.z) + word0;
+      const Word* known = raw.known.row(y + window.lower.y, z + window.lower.z) + word0;
+      Word* to = local.mutable_row(y, z);
+      for (std::size_t i = 0; i < local.words_per_row(); ++i) {
+        to[i] = growing_word(occupied[i], known[i], policy);
+      }
+    }
+  }
+  return local;
+}
+
+// visit(word number in the brick, y, z) for each row of the brick that the grid has
+template <typename Visit>
+void for_rows(Index3 brick, Index3 grid, Visit&& visit) {
+  for (int dz = 0; dz < Brick::kSizeZ; ++dz) {
+    for (int dy = 0; dy < Brick::kSizeY; ++dy) {
+      const int y = brick.y * Brick::kSizeY + dy;
+      const int z = brick.z * Brick::kSizeZ + dz;
+      if (y < grid.y && z < grid.z) visit(std::size_t(Brick::kSizeY * dz + dy), y, z);
+    }
+  }
+}
+
+Word valid_bits(Index3 brick, Index3 grid) {
+  const int used = std::min(grid.x - brick.x * Brick::kSizeX, Brick::kSizeX);
+  return used == 64 ? ~Word{0} : (Word{1} << used) - 1;
+}
+
+}  // namespace
+
+DirtyBricks::DirtyBricks(Index3 grid_size, int reach)
+    : size_(grid_size),
+      counts_(brick_counts(grid_size)),
+      reach_(reach),
+      marked_(counts_, false) {}
+
+void DirtyBricks::mark(Index3 voxel, bool grows) {
+  const int reach = grows ? reach_ : 0;
+  const auto lower = [&](int v, int side) { return std::max(0, v - reach) / side; };
+  const auto upper = [&](int v, int side, int n) { return std::min(n - 1, v + reach) / side; };
+  const int x1 = upper(voxel.x, Brick::kSizeX, size_.x);
+  const int y1 = upper(voxel.y, Brick::kSizeY, size_.y);
+  const int z1 = upper(voxel.z, Brick::kSizeZ, size_.z);
+  for (int z = lower(voxel.z, Brick::kSizeZ); z <= z1; ++z) {
+    for (int y = lower(voxel.y, Brick::kSizeY); y <= y1; ++y) {
+      for (int x = lower(voxel.x, Brick::kSizeX); x <= x1; ++x) {
+        if (marked_.get({x, y, z})) continue;
+        marked_.set({x, y, z}, true);
+        bricks_.push_back({x, y, z});
+      }
+    }
+  }
+}
+
+const std::vector<Index3>& DirtyBricks::bricks() {
+  std::sort(bricks_.begin(), bricks_.end(), [](Index3 a, Index3 b) {
+    if (a.z != b.z) return a.z < b.z;
+    return a.y != b.y ? a.y < b.y : a.x < b.x;
+  });
+  return bricks_;
+}
+
+int reach_of(const Growth& growth, const GridGeometry& geometry) {
+  const int farthest = std::max({geometry.size.x, geometry.size.y, geometry.size.z});
+  return int(std::min(std::ceil(growth.inflation_m / geometry.resolution_m), double(farthest)));
+}
+
+Brick regrow(const RawVoxels& raw, const Growth& growth, Index3 index) {
+  const Index3 grid = raw.geometry.size;
+  const Window window = window_around(index, reach_of(growth, raw.geometry), grid);
+  const BitGrid local = growing_bits(raw, window, growth.unknown);
+  const BitGrid grown =
+      inflate(local, growth.inflation_m, raw.geometry.resolution_m).value();
+  const std::size_t word = std::size_t(index.x) - std::size_t(window.lower.x) / 64;
+  const Word valid = valid_bits(index, grid);
+
+  Brick brick;
+  brick.index = index;
+  for_rows(index, grid, [&](std::size_t at, int y, int z) {
+    const Word known = raw.known.row(y, z)[index.x];
+    const Word bits = grown.row(y - window.lower.y, z - window.lower.z)[word];
+    brick.occupied[at] = finished_word(bits, known, growth.unknown) & valid;
+    brick.known[at] = known & valid;
+  });
+  return brick;
+}
+
+Brick brick_of(const VoxelGrid& grid, Index3 index) {
+  const Word valid = valid_bits(index, grid.geometry.size);
+  Brick brick;
+  brick.index = index;
+  for_rows(index, grid.geometry.size, [&](std::size_t at, int y, int z) {
+    brick.occupied[at] = grid.occupied.row(y, z)[index.x] & valid;
+    brick.known[at] = grid.known.row(y, z)[index.x] & valid;
+  });
+  return brick;
+}
+
+}  // namespace goshawk::map_server

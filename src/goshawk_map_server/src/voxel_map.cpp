@@ -1,0 +1,160 @@
+#include "goshawk/map_server/voxel_map.hpp"
+
+#include <octomap/OcTree.h>
+
+#include <algorithm>
+#include <limits>
+#include <new>
+
+#include "goshawk/core/inflation.hpp"
+#include "growth.hpp"
+
+namespace goshawk::map_server {
+namespace {
+
+constexpr int kOriginKey = 32768;
+constexpr int kTreeDepth = 16;
+
+struct KeyBox {
+  Index3 lower;
+  Index3 upper;  // exclusive
+};
+
+Index3 lower_key(const octomap::OcTree::leaf_iterator& leaf) {
+  const octomap::OcTreeKey key = leaf.getIndexKey();
+  return {key[0], key[1], key[2]};
+}
+
+int side_of(const octomap::OcTree::leaf_iterator& leaf) {
+  return 1 << (kTreeDepth - int(leaf.getDepth()));
+}
+
+// In keys, not in metres: exact.
+KeyBox bounds_of(const octomap::OcTree& tree) {
+  constexpr int most = std::numeric_limits<int>::max();
+  KeyBox box{{most, most, most}, {0, 0, 0}};
+  for (auto leaf = tree.begin_leafs(), end = tree.end_leafs(); leaf != end; ++leaf) {
+    const Index3 at = lower_key(leaf);
+    const int side = side_of(leaf);
+    box.lower = {std::min(box.lower.x, at.x), std::min(box.lower.y, at.y),
+                 std::min(box.lower.z, at.z)};
+    box.upper = {std::max(box.upper.x, at.x + side), std::max(box.upper.y, at.y + side),
+                 std::max(box.upper.z, at.z + side)};
+  }
+  return box;
+}
+
+Result<GridGeometry> geometry_of(const octomap::OcTree& tree, const VoxelizeOptions& options) {
+  const double res = tree.getResolution();
+  if (options.box) return raster_of(*options.box, res, options.max_voxels);
+  const KeyBox keys = bounds_of(tree);
+  if (keys.lower.x >= keys.upper.x) {
+    return fail(ErrorCode::map_empty, "the map knows of no voxel: load one that holds something");
+  }
+  const auto metres = [&](Index3 key) -> Vec3 {
+    return res * Vec3(key.x - kOriginKey, key.y - kOriginKey, key.z - kOriginKey);
+  };
+  return raster_of({metres(keys.lower), metres(keys.upper)}, res, options.max_voxels);
+}
+
+Index3 lower_key(const GridGeometry& geometry) {
+  const Vec3 steps = (geometry.origin_map / geometry.resolution_m).array().round().matrix();
+  return {int(steps.x()) + kOriginKey, int(steps.y()) + kOriginKey, int(steps.z()) + kOriginKey};
+}
+
+// One leaf: a cube of voxels, cut to the grid.
+void fill(RawVoxels& raw, Index3 at, int side, bool occupied) {
+  const Index3 n = raw.geometry.size;
+  const int x0 = std::max(at.x, 0);
+  const int x1 = std::min(at.x + side, n.x);
+  if (x0 >= x1) return;
+  for (int z = std::max(at.z, 0); z < std::min(at.z + side, n.z); ++z) {
+    for (int y = std::max(at.y, 0); y < std::min(at.y + side, n.y); ++y) {
+      raw.known.set_run(x0, x1, y, z, true);
+      if (occupied) raw.occupied.set_run(x0, x1, y, z, true);
+    }
+  }
+}
+
+}  // namespace
+
+Result<RawVoxels> voxelize(const octomap::OcTree& tree, const VoxelizeOptions& options) try {
+  const auto geometry = geometry_of(tree, options);
+  if (!geometry) return geometry.error();
+  RawVoxels raw{*geometry, BitGrid(geometry->size, true), BitGrid(geometry->size, false)};
+  const Index3 origin = lower_key(*geometry);
+  for (auto leaf = tree.begin_leafs(), end = tree.end_leafs(); leaf != end; ++leaf) {
+    fill(raw, lower_key(leaf) - origin, side_of(leaf), tree.isNodeOccupied(*leaf));
+  }
+  return raw;
+} catch (const std::bad_alloc&) {
+  return fail(ErrorCode::map_too_large,
+              "the map's bits do not fit into memory: give a smaller box");
+}
+
+std::string_view to_string(UnknownPolicy policy) {
+  switch (policy) {
+    case UnknownPolicy::occupied: return "occupied";
+    case UnknownPolicy::blocked: return "blocked";
+    case UnknownPolicy::free: return "free";
+  }
+  return "";
+}
+
+std::optional<UnknownPolicy> unknown_policy(std::string_view word) {
+  for (const auto policy :
+       {UnknownPolicy::occupied, UnknownPolicy::blocked, UnknownPolicy::free}) {
+    if (to_string(policy) == word) return policy;
+  }
+  return {};
+}
+
+Result<VoxelGrid> grow(const RawVoxels& raw, const Growth& growth, std::uint64_t version) {
+  VoxelGrid grid;
+  grid.geometry = raw.geometry;
+  grid.version = version;
+  grid.inflation_m = growth.inflation_m;
+  grid.unknown_is_occupied = growth.unknown != UnknownPolicy::free;
+
+  // Word by word in place, so that no more than one layer is needed beside raw and result.
+  const auto combine = [&](BitGrid& bits, auto&& rule) {
+    for (int z = 0; z < raw.geometry.size.z; ++z) {
+      for (int y = 0; y < raw.geometry.size.y; ++y) {
+        BitGrid::Word* row = bits.mutable_row(y, z);
+        const BitGrid::Word* known = raw.known.row(y, z);
+        for (std::size_t i = 0; i < bits.words_per_row(); ++i) {
+          row[i] = rule(row[i], known[i], growth.unknown);
+        }
+      }
+    }
+  };
+  Result<BitGrid> grown = BitGrid();
+  if (growth.unknown == UnknownPolicy::occupied) {
+    BitGrid growing = raw.occupied;
+    combine(growing, growing_word);
+    grown = inflate(growing, growth.inflation_m, raw.geometry.resolution_m);
+  } else {
+    grown = inflate(raw.occupied, growth.inflation_m, raw.geometry.resolution_m);
+  }
+  if (!grown) return grown.error();
+  if (growth.unknown == UnknownPolicy::blocked) combine(*grown, finished_word);
+  // Padding known = false makes ~known true there, which is the padding of `occupied`.
+  grid.occupied = std::move(*grown);
+  grid.known = raw.known;
+  return grid;
+}
+
+Result<VoxelGrid> make_voxel_grid(const RawVoxels& raw, const Growth& growth,
+                                  std::uint64_t version) {
+  auto grid = grow(raw, growth, version);
+  if (grid && grid->occupied.count() == grid->occupied.voxels()) {
+    return fail(ErrorCode::map_empty,
+                "no voxel of the map is free after obstacles grew by " +
+                    std::to_string(growth.inflation_m) + " m with unknown space " +
+                    std::string(to_string(growth.unknown)) +
+                    ": use a smaller radius or margin, or treat unknown space as free");
+  }
+  return grid;
+}
+
+}  // namespace goshawk::map_server

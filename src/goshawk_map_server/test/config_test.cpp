@@ -1,0 +1,69 @@
+#include "goshawk/map_server/config.hpp"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <set>
+#include <stdexcept>
+
+namespace goshawk::map_server {
+namespace {
+
+// Checks a value against its rule, as the parameter reader does.
+struct Checker {
+  std::set<std::string> names;
+  bool all_valid = true;
+
+  void operator()(const char* name, const std::string& value, const char*, const char*,
+                  const OneOf& rule) {
+    names.insert(name);
+    all_valid &= std::count(rule.choices.begin(), rule.choices.end(), value) == 1;
+  }
+  template <typename T>
+  void operator()(const char* name, const T& value, const char*, const char*, const Range& rule) {
+    names.insert(name);
+    all_valid &= rule.contains(double(value));
+  }
+  template <typename T>
+  void operator()(const char* name, const T&, const char*, const char*, const Anything&) {
+    names.insert(name);
+  }
+};
+
+TEST(Config, DefaultsAreValidAndEveryParameterIsDescribed) {
+  const Config config;
+  Checker checker;
+  describe(config, checker);
+  EXPECT_TRUE(checker.all_valid);
+  EXPECT_EQ(checker.names.size(), 15U);
+}
+
+TEST(Config, EveryAllowedWordIsUnderstood) {
+  for (const std::string word : {"occupied", "blocked", "free"}) {
+    Config config;
+    config.unknown = word;
+    EXPECT_EQ(to_string(growth(config).unknown), word);
+  }
+  for (const std::string word : {"map", "points", "scan"}) {
+    Config config;
+    config.cloud_meaning = word;
+    EXPECT_NO_THROW((void)load_options(config));
+  }
+  Config config;
+  config.unknown = "perhaps";
+  EXPECT_THROW((void)growth(config), std::invalid_argument);
+}
+
+TEST(Config, InflationIsRadiusPlusMarginAndTheBoxIsOnlyUsedOnDemand) {
+  Config config;
+  EXPECT_DOUBLE_EQ(growth(config).inflation_m, 0.2);
+  EXPECT_FALSE(voxelize_options(config).box);
+  config.use_box = true;
+  config.box_z_min_m = -1.0;
+  ASSERT_TRUE(voxelize_options(config).box);
+  EXPECT_EQ(voxelize_options(config).box->lower_map, Vec3(0, 0, -1));
+  EXPECT_EQ(load_options(config).box->upper_map, Vec3(10, 10, 4));
+}
+
+}  // namespace
+}  // namespace goshawk::map_server
