@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstdint>
+#include <cstdlib>
+#include <memory>
+
+#include "goshawk/path_search/move_cost.hpp"
+
+namespace goshawk::path_search {
+
+/// What the search knows of a voxel, in 64 bits that compare like the quality of the label:
+///
+///     63..49 query number | 48..6 kMaxCost - g | 5..1 direction of arrival | 0 expanded
+///
+/// A label of an earlier query is smaller than every label of this one, and of two labels of one
+/// query the larger has the smaller cost. So "unknown or worse" is one comparison, memory that is
+/// zero is a valid empty table, and nothing is cleared between queries.
+using Label = std::uint64_t;
+
+inline constexpr int kCostBits = 43;
+inline constexpr Cost kMaxCost = (Cost{1} << kCostBits) - 1;  // 4 million voxels
+inline constexpr Label kExpanded = 1;
+
+/// One label a node, 8 bytes. The memory comes from calloc: on a big map the pages that a search
+/// does not touch are never made.
+class LabelTable {
+ public:
+  /// @return false where there is no memory for so many
+  bool resize(std::int64_t nodes) {
+    labels_.reset(static_cast<Label*>(std::calloc(std::size_t(nodes), sizeof(Label))));
+    nodes_ = labels_ ? nodes : 0;
+    query_ = 0;
+    return labels_ != nullptr;
+  }
+
+  /// Forgets all labels. Once in 32767 queries the table is renewed, at the price of resize().
+  /// @return false where that found no memory
+  bool start_query() {
+    if (query_ == kLastQuery && !resize(nodes_)) return false;
+    ++query_;
+    root_ = (query_ << 49) | (Label(kMaxCost) << 6);
+    return true;
+  }
+
+  Label& operator[](std::uint32_t node) { return labels_.get()[node]; }
+  Label operator[](std::uint32_t node) const { return labels_.get()[node]; }
+
+  /// The label of cost 0, without direction.
+  Label root() const { return root_; }
+  bool is_current(Label label) const { return label >> 49 == query_; }
+  /// @pre is_current(label)
+  Cost cost(Label label) const { return Cost((root_ >> 6) - (label >> 6)); }
+
+  static int direction(Label label) { return int((label >> 1) & 31U); }
+  /// The label of a node that is reached from one of label `from` at a further cost.
+  static Label extend(Label from, Cost cost, int direction) {
+    return ((from & ~Label{63}) - (Label(cost) << 6)) | (Label(direction) << 1);
+  }
+  static bool improves(Label candidate, Label held) {
+    return (candidate & ~Label{63}) > (held | 63U);
+  }
+
+ private:
+  struct Free {
+    void operator()(Label* labels) const { std::free(labels); }
+  };
+  static constexpr Label kLastQuery = (Label{1} << 15) - 1;
+
+  std::unique_ptr<Label, Free> labels_;
+  std::int64_t nodes_ = 0;
+  Label query_ = 0;
+  Label root_ = 0;
+};
+
+}  // namespace goshawk::path_search

@@ -1,0 +1,107 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+#include "goshawk/core/bit_grid.hpp"
+#include "goshawk/path_search/move_rules.hpp"
+
+namespace goshawk::path_search {
+
+/// The obstacles as the search reads them: one bit a voxel in three copies, one with each axis as
+/// the fastest, so that a scan along any axis looks at a word at a time. A blocked layer
+/// surrounds the map, so that no index needs a bounds test; neighbouring rows share it.
+/// Memory: 3 bits a voxel and the layer.
+///
+/// The position of a voxel in the copy with x fastest is also its node number.
+class ObstacleBits {
+ public:
+  using Node = std::uint32_t;
+  static constexpr std::int64_t kMaxNodes = std::int64_t{0xFFFFFFFF};
+  static constexpr int kWindow = 57;  // bits that one unaligned 64-bit load always holds
+
+  /// @return nodes that a map of this size needs, or 0 where it is more than kMaxNodes
+  static std::int64_t nodes_for(Index3 size);
+
+  /// Takes over `blocked`; one pass over its words, and work for each voxel that differs from the
+  /// map before. @pre nodes_for(blocked.size()) > 0
+  void assign(const BitGrid& blocked);
+
+  Index3 size() const { return size_; }
+  std::int64_t nodes() const { return size_.x == 0 ? 0 : nodes_for(size_); }
+  bool contains(Index3 i) const {
+    return unsigned(i.x) < unsigned(size_.x) && unsigned(i.y) < unsigned(size_.y) &&
+           unsigned(i.z) < unsigned(size_.z);
+  }
+
+  Node node(Index3 i) const { return Node(position(axes_[0], i.x, i.y, i.z)); }
+  Index3 index(Node node) const {
+    const std::uint64_t row = divide(node, row_magic_);
+    const std::uint64_t layer = divide(row, layer_magic_);
+    return {int(node - row * axes_[0].stride_u) - 1, int(row - layer * rows_per_layer_) - 1,
+            int(layer) - 1};
+  }
+  /// Node number of the neighbour minus that of the node.
+  std::int64_t offset(int direction) const { return offsets_[std::size_t(direction)]; }
+
+  bool blocked(Node node) const { return get(axes_[0], node); }
+
+  /// The 3x3x3 block around a node.
+  MoveRules::Rows block(Node node) const {
+    MoveRules::Rows rows;
+    const std::int64_t first = std::int64_t{node} - 1;
+    for (std::size_t r = 0; r < 9; ++r) {
+      const std::int64_t p = first + offsets_[3 * r + 1];
+      std::uint16_t pair;
+      std::memcpy(&pair, axes_[0].bytes() + (p >> 3), sizeof pair);
+      rows[r] = std::uint8_t((pair >> (p & 7)) & 7U);
+    }
+    return rows;
+  }
+
+  /// The straight jump: goes on from `from` by up to kWindow - 2 voxels.
+  /// @param axis 0, 1, 2 @param sign -1 or +1
+  /// @return steps to the first voxel that may have a forced neighbour, or to the end of the
+  /// window; the negated number of free steps where an obstacle comes first
+  int straight_jump(CornerRule rule, int axis, int sign, Index3 from) const;
+
+ private:
+  // One copy: bit position = u + 1 + stride_u (v + 1) + stride_v (w + 1) for the axes u, v, w.
+  struct Copy {
+    std::vector<std::uint64_t> words;  // a spare word at either end, for unaligned loads
+    std::int64_t stride_u = 0;         // bits from one v to the next
+    std::int64_t stride_v = 0;         // bits from one w to the next
+    const char* bytes() const { return reinterpret_cast<const char*>(words.data() + 1); }
+  };
+
+  static std::int64_t position(const Copy& c, int u, int v, int w) {
+    return u + 1 + c.stride_u * (v + 1) + c.stride_v * (w + 1);
+  }
+  static bool get(const Copy& c, std::int64_t p) {
+    return (c.words[std::size_t(p >> 6) + 1] >> (p & 63)) & 1U;
+  }
+  static void flip(Copy& c, std::int64_t p) {
+    c.words[std::size_t(p >> 6) + 1] ^= std::uint64_t{1} << (p & 63);
+  }
+  // floor(n / d) for n < 2^32 with magic = ceil(2^64 / d), d >= 2.
+  static std::uint64_t divide(std::uint64_t n, std::uint64_t magic) {
+    __extension__ using Wide = unsigned __int128;
+    return std::uint64_t((Wide{magic} * n) >> 64);
+  }
+
+  void resize(Index3 size);
+  void clear(Copy& copy, int u_size, int v_size, int w_size);
+  void assign_row(const std::uint64_t* row, int y, int z);
+  void apply_changes(std::uint64_t changes, int x0, int y, int z);
+
+  Index3 size_;
+  std::array<Copy, 3> axes_;  // x, y, z fastest; then the other two in the order x, y, z
+  std::array<std::int64_t, kDirections> offsets_{};
+  std::uint64_t rows_per_layer_ = 0;
+  std::uint64_t row_magic_ = 0;
+  std::uint64_t layer_magic_ = 0;
+};
+
+}  // namespace goshawk::path_search

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "goshawk/core/bit_grid.hpp"
+#include "goshawk/core/result.hpp"
+#include "goshawk/path_search/config.hpp"
+
+namespace goshawk::path_search {
+
+/// When may a path move diagonally past blocked voxels? (corrections.md, Corner cutting)
+enum class CornerRule {
+  no_squeeze,  // every voxel of the box that the move spans is free
+  squeeze,     // the target voxel is free
+};
+
+/// What a search did. A node is expanded when its successors are made, generated when it is put
+/// into the queue; one that is improved after its expansion counts again.
+struct Counters {
+  std::int64_t expanded = 0;
+  std::int64_t generated = 0;
+  friend bool operator==(const Counters&, const Counters&) = default;
+};
+
+/// A path over the 26-neighbour grid.
+struct VoxelPath {
+  std::vector<Index3> cells;  // every voxel from start to goal, consecutive ones are neighbours
+  double cost_voxels = 0.0;   // length in voxel edges: a move costs 1, sqrt(2) or sqrt(3)
+  Counters counters;
+};
+
+/// A search over a voxel grid. Implementations are deterministic; one object is for one thread.
+class GridPlanner {
+ public:
+  virtual ~GridPlanner() = default;
+
+  /// The value of Config::planner that makes it.
+  virtual std::string_view name() const = 0;
+
+  /// Takes over the obstacles; `blocked` is not kept. The same size as before costs one pass over
+  /// the words and work for each voxel that differs; a new size allocates. A map that cannot be
+  /// searched (empty, or more than 2^32 voxels) is reported by search().
+  virtual void set_map(const BitGrid& blocked) = 0;
+
+  /// @param start, goal voxels of the map
+  /// @param path overwritten; its capacity is reused, so that a repeated query allocates nothing
+  /// @return no_map, map_too_large, start_outside, start_occupied, goal_outside, goal_occupied,
+  /// no_path, or solver_failed where the path would be longer than four million voxels
+  virtual Status search(Index3 start, Index3 goal, VoxelPath& path) = 0;
+
+  /// The same, with a path of its own.
+  Result<VoxelPath> search(Index3 start, Index3 goal);
+};
+
+/// @return the planner that the configuration names, or invalid_parameter
+Result<std::unique_ptr<GridPlanner>> make_planner(const Config& config);
+
+/// @return invalid_parameter for a word that is not a corner rule
+Result<CornerRule> parse_corner_rule(std::string_view word);
+
+}  // namespace goshawk::path_search

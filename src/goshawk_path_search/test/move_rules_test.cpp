@@ -1,0 +1,3 @@
+#include "goshawk/path_search/move_rules.hpp"
+
+#include <gtest/gtest.h>
