@@ -36,24 +36,39 @@ Result<Solution> TrajectoryOptimizer::Method::answer(const Request& request) {
   return config_.method == "fixed" ? fixed(request) : scale(request);
 }
 
-// Design A with refinement B of docs/trajectories.md: solve, balance the pieces, solve again.
 Result<Solution> TrajectoryOptimizer::Method::scale(const Request& request) {
   Plan plan = cut_trapezoid(request, config_);
   if (plan.stays) return fixed(request);
+  if (request.rests()) {
+    refine(request, plan);
+  } else {
+    constexpr std::array<Lead, 11> kLeads{{{0.25, 1.0}, {0.1, 0.5}, {0.1, 1.6}, {0.02, 1.0},
+                                           {0.05, 0.25}, {0.05, 0.7}, {0.03, 0.12}, {0.02, 0.05},
+                                           {0.05, 3.0}, {0.01, 0.02}, {0.01, 1.0}}};
+    for (const Lead& lead : kLeads) {
+      plan = cut_trapezoid(request, config_, lead);
+      refine(request, plan);
+      if (best_) break;
+    }
+    if (!best_) try_longer(request, plan);
+  }
+  if (best_) return finish();
+  return failure(request);
+}
+
+// Design A with refinement B of docs/trajectories.md: solve, balance the pieces, solve again.
+void TrajectoryOptimizer::Method::refine(const Request& request, Plan& plan) {
   const bool rests = request.rests();
   const int passes = 1 + config_.refinement_passes + (rests ? 0 : 4);
   for (int pass = 0; pass < passes; ++pass) {
     double kappa = 1.0;
-    if (!solve_scale(request, plan, kappa)) break;
-    consider(request, plan);
+    if (!solve_scale(request, plan, kappa)) return;
+    const bool certified = consider(request, plan);
     // A moving end was linearised at kappa = 1: done when it has come to be so.
-    const bool settled = rests || std::abs(kappa - 1.0) < 1e-3;
-    if (pass >= config_.refinement_passes && settled && best_) break;
+    const bool settled = certified && (rests || std::abs(kappa - 1.0) < 1e-3);
+    if (pass >= config_.refinement_passes && settled) return;
     if (pass < config_.refinement_passes) balance(request, plan);
   }
-  if (!best_ && solves_ > 0 && !rests) try_longer(request, plan);
-  if (best_) return finish();
-  return failure(request);
 }
 
 // Pieces that stay below both limits get less time.

@@ -21,6 +21,7 @@ class TrajectoryOptimizer::Method {
   Result<Solution> fixed(const Request& request);
   Result<Solution> thesis(const Request& request);
 
+  void refine(const Request& request, Plan& plan);
   /// Time and shape together, once: the plan becomes the solution and kappa its time scale.
   bool solve_scale(const Request& request, Plan& plan, double& kappa);
   /// Least jerk with the plan's durations.

@@ -10,7 +10,7 @@ namespace goshawk::trajectory_optimizer {
 namespace {
 
 constexpr double kLeastLength = 1e-6;   // [m] of a path, for the estimate of its duration
-constexpr double kShortest = 0.05;      // of a mean piece: shorter ones cost accuracy
+constexpr double kShortest = 0.01;      // of a mean piece: shorter ones cost accuracy
 
 double speed_along(const FlatState& state, const Vec3& from, const Vec3& to) {
   const Vec3 step = to - from;
@@ -41,7 +41,7 @@ double Plan::duration_s() const {
   return std::accumulate(durations_s.begin(), durations_s.end(), 0.0);
 }
 
-Plan cut_trapezoid(const Request& request, const Config& config) {
+Plan cut_trapezoid(const Request& request, const Config& config, const Lead& lead) {
   const auto& waypoints = request.corridor.waypoints_map;
   const std::size_t n = waypoints.size() - 1;
   const TimeProfile profile(waypoints, request.limits,
@@ -50,18 +50,34 @@ Plan cut_trapezoid(const Request& request, const Config& config) {
   Plan plan;
   plan.stays = request.rests() && path_length(waypoints) <= kLeastLength;
   plan.reference_s = plan.stays ? config.piece_duration_s : profile.duration_s();
-  plan.reference_s = std::max(plan.reference_s, rest_to_rest_duration_s(
-      kLeastLength, request.limits.v_max_m_s, request.limits.a_max_m_s2));
+  plan.reference_s = std::max(
+      plan.reference_s, rest_to_rest_duration_s(kLeastLength, request.limits.v_max_m_s,
+                                                request.limits.a_max_m_s2));
   const double longest = std::min(config.piece_duration_s, plan.reference_s / config.min_pieces);
+  // Of a piece that begins or ends at t.
+  const auto cap = [&](double t) {
+    double most = longest;
+    if (is_moving(request.start)) most = std::min(most, std::max(lead.first_piece * longest, t));
+    if (is_moving(request.goal)) {
+      most = std::min(most, std::max(lead.first_piece * longest, 0.5 * (plan.reference_s - t)));
+    }
+    return most;
+  };
+  double begin = 0.0;
   plan.joints.push_back(request.start);
   for (int k = 0; k < profile.segments(); ++k) {
-    const double duration =
+    const double trapezoid =
         plan.stays ? plan.reference_s / profile.segments() : profile.duration_s(k);
-    const int pieces = std::max(1, int(std::ceil(duration / longest - 1e-9)));
-    for (int i = 1; i <= pieces; ++i) {
-      append(plan, std::max(duration / pieces, kShortest * longest), k,
-             profile.state(k, duration * i / pieces));
+    const double stretch = k == 0 ? lead.first_segment : 1.0;
+    const double duration = stretch * trapezoid;
+    for (double t = 0.0, left = 1.0; left > 0.0;) {
+      left = std::ceil((duration - t) / cap(begin + t) - 1e-9) - 1.0;
+      const double piece = left > 0.0 ? (duration - t) / (left + 1.0) : duration - t;
+      t += piece;
+      append(plan, std::max(piece, kShortest * longest), k,
+             profile.state(k, std::min(t / stretch, trapezoid)));
     }
+    begin += duration;
   }
   plan.joints.back() = request.goal;
   return plan;
@@ -182,6 +198,13 @@ bool make_problem(const Request& request, const Plan& plan, bool scale, double t
   }
   problem.v_max.assign(m, tighten);
   problem.a_max.assign(m, tighten * limits.a_max_m_s2 * units.time_s / limits.v_max_m_s);
+  // A start or goal may lie on a limit: half of the certificate's tolerance gives it an interior.
+  const auto loosen = [&](std::size_t piece) {
+    problem.v_max[piece] += 0.5e-6 / limits.v_max_m_s;
+    problem.a_max[piece] += 0.5e-6 * units.time_s / limits.v_max_m_s;
+  };
+  if (is_moving(request.start)) loosen(0);
+  if (is_moving(request.goal)) loosen(m - 1);
   for (const FlatState& joint : plan.joints) problem.joints.push_back(to_units(joint, units));
   if (scale) {  // v' = v sqrt(eta), a' = a eta
     const auto rate = [](const Joint& x) {

@@ -31,9 +31,17 @@ struct Plan {
   double duration_s() const;
 };
 
-/// Cuts the trapezoid over the corridor's waypoints into pieces of at most config.piece_duration_s,
-/// shorter at a moving start, so that its hull fits.
-Plan cut_trapezoid(const Request& request, const Config& config);
+/// How a moving start (or goal) is met. The hull of a piece holds what its end state alone decides,
+/// so a vehicle that turns at its limits leaves room for a short piece only; and one that does not
+/// fly along its path leaves the first polytope sooner or later than the trapezoid thinks.
+struct Lead {
+  double first_piece = 1.0;    // in longest pieces; each next one is at most twice as long
+  double first_segment = 1.0;  // duration of the first segment in trapezoid durations
+};
+
+/// Cuts the trapezoid over the corridor's waypoints into pieces of at most config.piece_duration_s.
+/// @param lead plays no part from rest to rest
+Plan cut_trapezoid(const Request& request, const Config& config, const Lead& lead = {});
 /// One piece a segment, each as long as from rest to rest (thesis, time allocation, corrected).
 Plan thesis_plan(const Request& request);
 
