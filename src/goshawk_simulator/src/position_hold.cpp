@@ -56,9 +56,9 @@ ThrustAttitude PositionHold::thrust_along(const Vec3& acceleration_map) const {
   if (side > side_max) force.head<2>() *= side_max / side;
 
   const Vec3 z = force.normalized();
-  const Vec3 y = z.cross(Vec3(std::cos(yaw_rad_), std::sin(yaw_rad_), 0.0)).normalized();
+  const Vec3 x = Vec3(-std::sin(yaw_rad_), std::cos(yaw_rad_), 0.0).cross(z).normalized();
   Eigen::Matrix3d R_map_base;
-  R_map_base << y.cross(z), y, z;
+  R_map_base << x, z.cross(x), z;
   return {force.norm(), Eigen::Quaterniond(R_map_base), Vec3::Zero()};
 }
 

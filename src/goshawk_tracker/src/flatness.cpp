@@ -12,16 +12,16 @@ ThrustAttitude thrust_attitude_of(const Vec3& specific_force_map,
   const Vec3 heading(std::cos(yaw_rad), std::sin(yaw_rad), 0.0);
   const Vec3 heading_left(-heading.y(), heading.x(), 0.0);
   const Vec3 z = specific_force_map / force;
-  const Vec3 y = z.cross(heading).normalized();
-  const Vec3 x = y.cross(z);
+  const Vec3 x = heading_left.cross(z).normalized();
+  const Vec3 y = z.cross(x);
 
   // The derivative of z is omega x z: its parts along x and y are omega_y and -omega_x.
   const Vec3 z_rate = (specific_force_rate_map - z.dot(specific_force_rate_map) * z) / force;
   const double omega_x = -y.dot(z_rate);
   const double omega_y = x.dot(z_rate);
-  // y stays at right angles to the heading: the derivative of y . heading = 0 gives omega_z.
+  // x stays above or below the heading: the derivative of x . heading_left = 0 gives omega_z.
   const double omega_z =
-      (omega_x * z.dot(heading) + yaw_rate_rad_s * y.dot(heading_left)) / x.dot(heading);
+      (omega_y * z.dot(heading_left) + yaw_rate_rad_s * x.dot(heading)) / y.dot(heading_left);
 
   Eigen::Matrix3d R_map_base;
   R_map_base << x, y, z;

@@ -20,14 +20,14 @@ struct Config {
   double max_tilt_rad = 0.8;
   double linear_drag_xy_kg_s = 0.25;
   double linear_drag_z_kg_s = 0.15;
-  double actuation_delay_s = 0.03;
+  double actuation_delay_s = 0.02;
 
   double position_xy_1_s2 = 9.0;
   double position_z_1_s2 = 12.0;
   double velocity_xy_1_s = 5.0;
   double velocity_z_1_s = 6.0;
   double max_feedback_m_s2 = 6.0;
-  double disturbance_bandwidth_rad_s = 2.5;
+  double disturbance_bandwidth_rad_s = 4.0;
   double max_disturbance_m_s2 = 4.0;
   double max_yaw_rate_rad_s = 1.0;
 
