@@ -1,0 +1,32 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <optional>
+#include <string>
+
+#include "cli.hpp"
+
+namespace goshawk::cli {
+
+/// A `goshawk launch` as a child of this process, in a process group of its own.
+class LaunchProcess {
+ public:
+  /// @param output_file where launch's own words go
+  static Result<LaunchProcess> start(const Arguments& launch_arguments, int domain,
+                                     const std::string& output_file);
+  LaunchProcess(LaunchProcess&& other) noexcept : pid_(std::exchange(other.pid_, -1)) {}
+  LaunchProcess& operator=(LaunchProcess&&) = delete;
+  ~LaunchProcess() { stop(); }
+
+  /// @return the exit status if it has ended by itself
+  std::optional<int> ended();
+  /// Asks it to stop, waits until it has; nothing where it has ended already.
+  void stop();
+
+ private:
+  explicit LaunchProcess(pid_t pid) : pid_(pid) {}
+  pid_t pid_;
+};
+
+}  // namespace goshawk::cli

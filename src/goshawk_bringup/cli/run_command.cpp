@@ -1,0 +1,48 @@
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstring>
+
+#include "install.hpp"
+#include "verbs.hpp"
+
+namespace goshawk::cli {
+namespace {
+
+constexpr const char* kRunHelp =
+    "usage: goshawk run COMPONENT[:NODE_NAME] ... [--ros-args -r from:=to -p name:=value\n"
+    "                   --params-file FILE --log-level LEVEL]\n\n"
+    "Starts one component, or several in one process, until Ctrl-C.\n"
+    "goshawk param describe COMPONENT lists its parameters.\n";
+
+// Becomes another program. @return only where that fails
+int become(const Arguments& command) {
+  std::vector<char*> pointers;
+  for (const auto& word : command) pointers.push_back(const_cast<char*>(word.c_str()));
+  pointers.push_back(nullptr);
+  execv(pointers[0], pointers.data());
+  return report_failure(
+      fail(ErrorCode::io_failed, command[0] + " cannot be started: " + std::strerror(errno)),
+      false, kNotDone);
+}
+
+}  // namespace
+
+int run_command(const Arguments& arguments) {
+  if (arguments.empty() || arguments[0] == "--help" || arguments[0] == "-h") {
+    std::fputs(kRunHelp, arguments.empty() ? stderr : stdout);
+    return arguments.empty() ? kWrongCall : kDone;
+  }
+  Arguments command{install_prefix() + "/bin/goshawk_container"};
+  command.insert(command.end(), arguments.begin(), arguments.end());
+  return become(command);
+}
+
+int launch_command(const Arguments& arguments) {
+  Arguments command{"/usr/bin/python3", install_prefix() + "/lib/goshawk/launch.py", "--prefix",
+                    install_prefix()};
+  command.insert(command.end(), arguments.begin(), arguments.end());
+  return become(command);
+}
+
+}  // namespace goshawk::cli
