@@ -2,6 +2,7 @@
 
 #include <octomap/OcTree.h>
 
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -15,6 +16,17 @@ namespace goshawk::map_server {
 namespace {
 
 constexpr double kHalfKeys = 32768.0;  // an OcTree spans 65536 voxels, the origin in the middle
+
+// OctoMap's own writeBinary says so on stderr, and cuts the resolution to six digits.
+void write_bt(std::ostream& file, const octomap::OcTree& tree) {
+  char resolution[32];
+  const auto end = std::to_chars(resolution, resolution + sizeof resolution, tree.getResolution());
+  file << "# Octomap OcTree binary file\n"
+          "# (feel free to add / change comments, but leave the first line as it is!)\n"
+          "id OcTree\nsize "
+       << tree.size() << "\nres " << std::string_view(resolution, end.ptr) << "\ndata\n"
+       << binary_payload(tree);
+}
 
 Error too_large(const std::string& what) { return fail(ErrorCode::map_too_large, what); }
 
@@ -95,7 +107,8 @@ Status save_octree(const octomap::OcTree& tree, const std::string& path) {
   }
   const std::string unfinished = path + ".part";
   std::ofstream file(unfinished, std::ios::binary);
-  const bool written = file && (ending == "bt" ? tree.writeBinaryConst(file) : tree.write(file));
+  if (ending == "bt") write_bt(file, tree);
+  const bool written = file && (ending == "bt" || tree.write(file));
   file.close();
   std::error_code error;
   if (written && file) std::filesystem::rename(unfinished, path, error);

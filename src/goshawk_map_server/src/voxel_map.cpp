@@ -145,7 +145,7 @@ Result<VoxelGrid> grow(const RawVoxels& raw, const Growth& growth, std::uint64_t
 }
 
 Result<VoxelGrid> make_voxel_grid(const RawVoxels& raw, const Growth& growth,
-                                  std::uint64_t version) {
+                                  std::uint64_t version) try {
   auto grid = grow(raw, growth, version);
   if (grid && grid->occupied.count() == grid->occupied.voxels()) {
     return fail(ErrorCode::map_empty,
@@ -155,6 +155,9 @@ Result<VoxelGrid> make_voxel_grid(const RawVoxels& raw, const Growth& growth,
                     ": use a smaller radius or margin, or treat unknown space as free");
   }
   return grid;
+} catch (const std::bad_alloc&) {
+  return fail(ErrorCode::map_too_large,
+              "the grown map does not fit into memory: give a smaller box");
 }
 
 }  // namespace goshawk::map_server
