@@ -1,5 +1,6 @@
 #include "bt_encoder.hpp"
 
+#include <bit>
 #include <cstdint>
 #include <optional>
 
@@ -101,6 +102,15 @@ class BtEncoder {
 
 std::string encode_bt(Index3 lower_key, const BitGrid& occupied, const BitGrid& known) {
   return BtEncoder(lower_key, occupied, known).run();
+}
+
+std::uint64_t count_nodes(std::string_view payload) {
+  std::uint64_t nodes = payload.size() / 2;
+  for (const char byte : payload) {
+    // Pairs of bits that differ are leaves.
+    nodes += std::uint64_t(std::popcount((unsigned(byte) ^ unsigned(byte) >> 1) & 0x55U));
+  }
+  return nodes;
 }
 
 }  // namespace goshawk::map_server
