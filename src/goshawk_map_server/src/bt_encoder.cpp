@@ -1,6 +1,8 @@
 #include "bt_encoder.hpp"
 
+#include <bit>
 #include <cstdint>
+#include <optional>
 
 namespace goshawk::map_server {
 namespace {
@@ -29,6 +31,10 @@ class BtEncoder {
       return unknown;
     }
     if (level == 0) return voxel(key - lower_);
+    // Looking at rows of bits is many times faster than at voxels; most of a map is uniform.
+    if (level == 5 || level == 3) {
+      if (const auto content = uniform(key - lower_, side)) return *content;
+    }
 
     const std::size_t at = bytes_.size();
     append(0);
@@ -55,6 +61,31 @@ class BtEncoder {
     return occupied_.get(i) ? occupied_space : free_space;
   }
 
+  // What all voxels of a block are, or nothing where they differ or some lie outside the grid.
+  std::optional<Content> uniform(Index3 at, int side) const {
+    const Index3 last{at.x + side - 1, at.y + side - 1, at.z + side - 1};
+    if (!occupied_.contains(at) || !occupied_.contains(last)) return {};
+    const Content content = voxel(at);
+    const BitGrid::Word ones = (BitGrid::Word{1} << side) - 1;
+    const BitGrid::Word known = content == unknown ? 0 : ones;
+    const BitGrid::Word occupied = content == occupied_space ? ones : 0;
+    for (int z = at.z; z <= last.z; ++z) {
+      for (int y = at.y; y <= last.y; ++y) {
+        if (!known_.empty() && (run(known_.row(y, z), at.x, side) & ones) != known) return {};
+        if (content == unknown) continue;  // what is not known is not occupied either
+        if ((run(occupied_.row(y, z), at.x, side) & ones) != occupied) return {};
+      }
+    }
+    return content;
+  }
+
+  // The bits from x on; those beyond `length` mean nothing.
+  static BitGrid::Word run(const BitGrid::Word* row, int x, int length) {
+    const BitGrid::Word low = row[x >> 6] >> (x & 63);
+    if ((x & 63) + length <= 64) return low;
+    return low | row[(x >> 6) + 1] << (64 - (x & 63));
+  }
+
   void append(unsigned children) {
     bytes_.push_back(char(children & 0xFFU));
     bytes_.push_back(char(children >> 8));
@@ -71,6 +102,15 @@ class BtEncoder {
 
 std::string encode_bt(Index3 lower_key, const BitGrid& occupied, const BitGrid& known) {
   return BtEncoder(lower_key, occupied, known).run();
+}
+
+std::uint64_t count_nodes(std::string_view payload) {
+  std::uint64_t nodes = payload.size() / 2;
+  for (const char byte : payload) {
+    // Pairs of bits that differ are leaves.
+    nodes += std::uint64_t(std::popcount((unsigned(byte) ^ unsigned(byte) >> 1) & 0x55U));
+  }
+  return nodes;
 }
 
 }  // namespace goshawk::map_server

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
+#include <string_view>
 
 #include "goshawk/core/bit_grid.hpp"
 
@@ -12,5 +14,8 @@ namespace goshawk::map_server {
 /// @param lower_key OctoMap key of voxel (0, 0, 0) @param known empty: all voxels are known
 /// @return empty where nothing is known
 std::string encode_bt(Index3 lower_key, const BitGrid& occupied, const BitGrid& known);
+
+/// @return nodes of the tree that a payload describes, leaves included: the header's "size"
+std::uint64_t count_nodes(std::string_view payload);
 
 }  // namespace goshawk::map_server

@@ -37,7 +37,6 @@ Result<std::string> read_bytes(const std::string& path) {
   if (!file || !file.read(bytes.data(), std::streamsize(size))) {
     return fail(ErrorCode::map_unreadable, "it cannot be read: check its permissions");
   }
-  if (bytes.empty()) return malformed("it is empty");
   return bytes;
 }
 
@@ -142,6 +141,7 @@ Status load_tree(Result<OcTreePtr> tree, MapSource& source) {
 }
 
 Status load_bytes(std::string_view bytes, const LoadOptions& options, MapSource& source) {
+  if (bytes.empty()) return malformed("it is empty");
   if (source.format == "bt") return load_tree(read_bt(bytes), source);
   if (source.format == "ot") return load_tree(read_ot(bytes), source);
   if (source.format == "3dmap") {
@@ -157,28 +157,42 @@ Error about(const std::string& path, Error error) {
   return error;
 }
 
+Status check_ending(const std::string& path) {
+  const std::string ending = lower_case_ending(path);
+  for (const std::string_view known : {"bt", "ot", "pcd", "ply", "3dmap"}) {
+    if (ending == known) return success();
+  }
+  return about(path, fail(ErrorCode::map_unreadable,
+                          "its name must end in .bt, .ot, .pcd, .ply or .3dmap"));
+}
+
+Error no_memory() {
+  return fail(ErrorCode::map_too_large,
+              "it does not fit into memory: give a smaller box, or a coarser resolution");
+}
+
 }  // namespace
 
-Result<MapSource> load_map(const std::string& path, const LoadOptions& options) {
+Result<MapSource> load_map_bytes(std::string_view bytes, const std::string& name,
+                                 const LoadOptions& options) try {
+  if (auto status = check_ending(name); !status) return status.error();
   MapSource source;
-  source.format = lower_case_ending(path);
-  if (source.format != "bt" && source.format != "ot" && source.format != "pcd" &&
-      source.format != "ply" && source.format != "3dmap") {
-    return about(path, fail(ErrorCode::map_unreadable,
-                            "its name must end in .bt, .ot, .pcd, .ply or .3dmap"));
-  }
-  try {
-    const auto bytes = read_bytes(path);
-    if (!bytes) return about(path, bytes.error());
-    if (auto status = load_bytes(*bytes, options, source); !status) {
-      return about(path, status.error());
-    }
-  } catch (const std::bad_alloc&) {
-    return about(path, fail(ErrorCode::map_too_large,
-                            "it does not fit into memory: give a smaller box, or a coarser "
-                            "resolution"));
+  source.format = lower_case_ending(name);
+  if (auto status = load_bytes(bytes, options, source); !status) {
+    return about(name, status.error());
   }
   return source;
+} catch (const std::bad_alloc&) {
+  return about(name, no_memory());
+}
+
+Result<MapSource> load_map(const std::string& path, const LoadOptions& options) try {
+  if (auto status = check_ending(path); !status) return status.error();
+  const auto bytes = read_bytes(path);
+  if (!bytes) return about(path, bytes.error());
+  return load_map_bytes(*bytes, path, options);
+} catch (const std::bad_alloc&) {
+  return about(path, no_memory());
 }
 
 }  // namespace goshawk::map_server

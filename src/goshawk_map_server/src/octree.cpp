@@ -2,6 +2,7 @@
 
 #include <octomap/OcTree.h>
 
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -17,6 +18,67 @@ namespace {
 constexpr double kHalfKeys = 32768.0;  // an OcTree spans 65536 voxels, the origin in the middle
 
 Error too_large(const std::string& what) { return fail(ErrorCode::map_too_large, what); }
+
+Result<std::string> encode(const GridGeometry& geometry, const BitGrid& occupied,
+                           const BitGrid& known) {
+  if (auto status = geometry.check(); !status) return status.error();
+  if (!(occupied.size() == geometry.size) ||
+      (!known.empty() && !(known.size() == geometry.size))) {
+    return fail(ErrorCode::invalid_input, "the bits do not have the size of the geometry");
+  }
+  const Vec3 steps = geometry.origin_map / geometry.resolution_m;
+  if (steps.cwiseAbs().maxCoeff() > kHalfKeys) {
+    return too_large("the map's origin " + to_text(geometry.origin_map) +
+                     " m is out of OctoMap's reach at this resolution");
+  }
+  const Vec3 rounded = steps.array().round().matrix();
+  if ((steps - rounded).cwiseAbs().maxCoeff() > 1e-3) {
+    return fail(ErrorCode::invalid_parameter,
+                "the map's origin " + to_text(geometry.origin_map) +
+                    " m must be a multiple of its resolution to be kept in an OctoMap file");
+  }
+  const Vec3 upper = rounded + Vec3(geometry.size.x, geometry.size.y, geometry.size.z);
+  if (upper.maxCoeff() > kHalfKeys) {
+    return too_large("the map reaches beyond OctoMap's 32768 voxels from the origin");
+  }
+  const auto key = [&](double v) { return int(v + kHalfKeys); };
+  std::string payload = encode_bt(
+      {key(rounded.x()), key(rounded.y()), key(rounded.z())}, occupied, known);
+  if (payload.empty()) return fail(ErrorCode::map_empty, "the map knows of no voxel");
+  return payload;
+}
+
+// OctoMap's own writers chat on stderr, and cut the resolution to six digits.
+std::string header(const std::string& kind, std::uint64_t nodes, double resolution_m) {
+  char resolution[32];
+  const auto end = std::to_chars(resolution, resolution + sizeof resolution, resolution_m);
+  return "# Octomap OcTree " + kind +
+         "\n# (feel free to add / change comments, but leave the first line as it is!)\n"
+         "id OcTree\nsize " +
+         std::to_string(nodes) + "\nres " + std::string(resolution, end.ptr) + "\ndata\n";
+}
+
+// A file that was there before stays until the new one is whole.
+Status write_file(const std::string& path, const std::string& head, const std::string& body) {
+  const std::string unfinished = path + ".part";
+  std::ofstream file(unfinished, std::ios::binary);
+  file << head << body;
+  file.close();
+  std::error_code error;
+  if (file) std::filesystem::rename(unfinished, path, error);
+  if (file && !error) return success();
+  std::remove(unfinished.c_str());
+  return fail(ErrorCode::io_failed,
+              "cannot write '" + path + "': check that its folder exists, may be written to and "
+              "has space left");
+}
+
+Status check_ending(const std::string& path) {
+  const std::string ending = lower_case_ending(path);
+  if (ending == "bt" || ending == "ot") return success();
+  return fail(ErrorCode::map_unreadable,
+              "cannot write a map to '" + path + "': its name must end in .bt or .ot");
+}
 
 }  // namespace
 
@@ -57,57 +119,35 @@ Result<GridGeometry> raster_of(const Box& box, double resolution_m, std::int64_t
 
 Result<OcTreePtr> make_octree(const GridGeometry& geometry, const BitGrid& occupied,
                               const BitGrid& known) {
-  if (auto status = geometry.check(); !status) return status.error();
-  if (!(occupied.size() == geometry.size) ||
-      (!known.empty() && !(known.size() == geometry.size))) {
-    return fail(ErrorCode::invalid_input, "the bits do not have the size of the geometry");
-  }
-  const Vec3 steps = geometry.origin_map / geometry.resolution_m;
-  if (steps.cwiseAbs().maxCoeff() > kHalfKeys) {
-    return too_large("the map's origin " + to_text(geometry.origin_map) +
-                     " m is out of OctoMap's reach at this resolution");
-  }
-  const Vec3 rounded = steps.array().round().matrix();
-  if ((steps - rounded).cwiseAbs().maxCoeff() > 1e-3) {
-    return fail(ErrorCode::invalid_parameter,
-                "the map's origin " + to_text(geometry.origin_map) +
-                    " m must be a multiple of its resolution to be kept in an OctoMap file");
-  }
-  const Vec3 upper = rounded + Vec3(geometry.size.x, geometry.size.y, geometry.size.z);
-  if (upper.maxCoeff() > kHalfKeys) {
-    return too_large("the map reaches beyond OctoMap's 32768 voxels from the origin");
-  }
-  const auto key = [&](double v) { return int(v + kHalfKeys); };
-  const std::string payload = encode_bt(
-      {key(rounded.x()), key(rounded.y()), key(rounded.z())}, occupied, known);
-  if (payload.empty()) return fail(ErrorCode::map_empty, "the map knows of no voxel");
+  const auto payload = encode(geometry, occupied, known);
+  if (!payload) return payload.error();
   auto tree = std::make_shared<octomap::OcTree>(geometry.resolution_m);
-  MemoryStream stream(payload);
+  MemoryStream stream(*payload);
   tree->readBinaryData(stream);
   return tree;
 }
 
 Status save_octree(const octomap::OcTree& tree, const std::string& path) {
-  const std::string ending = lower_case_ending(path);
-  if (ending != "bt" && ending != "ot") {
-    return fail(ErrorCode::map_unreadable,
-                "cannot write a map to '" + path + "': its name must end in .bt or .ot");
+  if (auto status = check_ending(path); !status) return status;
+  if (lower_case_ending(path) == "bt") {
+    return write_file(path, header("binary file", tree.size(), tree.getResolution()),
+                      binary_payload(tree));
   }
-  const std::string unfinished = path + ".part";
-  std::ofstream file(unfinished, std::ios::binary);
-  const bool written = file && (ending == "bt" ? tree.writeBinaryConst(file) : tree.write(file));
-  file.close();
-  std::error_code error;
-  if (written && file) std::filesystem::rename(unfinished, path, error);
-  if (written && file && !error) return success();
-  std::remove(unfinished.c_str());
-  return fail(ErrorCode::io_failed,
-              "cannot write '" + path + "': check that its folder exists, may be written to and "
-              "has space left");
+  std::ostringstream body;
+  if (tree.size() > 0) tree.writeData(body);
+  return write_file(path, header("file", tree.size(), tree.getResolution()),
+                    std::move(body).str());
 }
 
 Status save_voxels(const GridGeometry& geometry, const BitGrid& occupied, const BitGrid& known,
                    const std::string& path) {
+  if (auto status = check_ending(path); !status) return status;
+  if (lower_case_ending(path) == "bt") {  // needs no tree
+    const auto payload = encode(geometry, occupied, known);
+    if (!payload) return payload.error();
+    return write_file(path, header("binary file", count_nodes(*payload), geometry.resolution_m),
+                      *payload);
+  }
   const auto tree = make_octree(geometry, occupied, known);
   if (!tree) return tree.error();
   return save_octree(**tree, path);

