@@ -30,7 +30,9 @@ std::uint32_t packed(const Color& c) {
   return byte(c.a) << 24 | byte(c.r * c.a) << 16 | byte(c.g * c.a) << 8 | byte(c.b * c.a);
 }
 
-void Canvas::Destroy::operator()(cairo_t* context) const { cairo_destroy(context); }
+void Canvas::Destroy::operator()(cairo_t* context) const {
+  cairo_destroy(context);
+}
 
 Canvas::Canvas(int width_px, int height_px) {
   cairo_surface_t* surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, width_px, height_px);
@@ -143,7 +145,9 @@ void Canvas::clip(const Rectangle& r) {
   cairo_clip(context_.get());
 }
 
-void Canvas::unclip() { cairo_restore(context_.get()); }
+void Canvas::unclip() {
+  cairo_restore(context_.get());
+}
 
 Status Canvas::save(const std::filesystem::path& png) const {
   std::string bytes;
@@ -153,8 +157,8 @@ Status Canvas::save(const std::filesystem::path& png) const {
     status = cairo_surface_write_to_png_stream(cairo_get_target(c), append, &bytes);
   }
   if (status == CAIRO_STATUS_SUCCESS) return write_file(png, bytes);
-  return fail(ErrorCode::io_failed, "Cairo could not draw '" + png.string() +
-                                        "': " + cairo_status_to_string(status));
+  return fail(ErrorCode::io_failed,
+              "Cairo could not draw '" + png.string() + "': " + cairo_status_to_string(status));
 }
 
 Color speed_color(double s) {

@@ -97,13 +97,16 @@ Status write_corridor_ply(const Flight& flight, const std::filesystem::path& fil
       }
     }
   }
-  return write_file(file,
-                    "ply\nformat ascii 1.0\ncomment corridor of a Goshawk flight, frame map, metres\n"
-                    "element vertex " + std::to_string(vertex_count) +
-                        "\nproperty double x\nproperty double y\nproperty double z\nelement face " +
-                        std::to_string(face_count) +
-                        "\nproperty list uchar int vertex_indices\nproperty int leg\n"
-                        "property int polytope\nend_header\n" + vertices + faces);
+  return write_file(
+      file,
+      "ply\nformat ascii 1.0\ncomment corridor of a Goshawk flight, frame map, metres\n"
+      "element vertex " +
+          std::to_string(vertex_count) +
+          "\nproperty double x\nproperty double y\nproperty double z\nelement face " +
+          std::to_string(face_count) +
+          "\nproperty list uchar int vertex_indices\nproperty int leg\n"
+          "property int polytope\nend_header\n" +
+          vertices + faces);
 }
 
 }  // namespace goshawk::flight_report

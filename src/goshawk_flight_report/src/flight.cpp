@@ -14,7 +14,9 @@ Error wrong(const std::string& what) {
   return fail(ErrorCode::invalid_input, "the flight cannot be drawn: " + what);
 }
 
-bool usable(const Vec3& p) { return p.allFinite() && p.cwiseAbs().maxCoeff() <= kFarthest_m; }
+bool usable(const Vec3& p) {
+  return p.allFinite() && p.cwiseAbs().maxCoeff() <= kFarthest_m;
+}
 
 bool usable(const std::vector<Vec3>& points) {
   for (const Vec3& p : points) {

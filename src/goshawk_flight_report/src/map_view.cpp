@@ -15,9 +15,10 @@ namespace goshawk::flight_report {
 
 namespace {
 
-constexpr double kLeft_px = 84.0, kTop_px = 78.0, kBottom_px = 62.0, kLegend_px = 250.0;
+constexpr double kLeft_px = 84.0, kTop_px = 78.0, kBottom_px = 62.0, kLegend_px = 258.0;
 constexpr double kMostWidth_px = 1400.0 - kLeft_px - kLegend_px;
 constexpr double kMostHeight_px = 1150.0;
+constexpr double kWholeHeight_m = 6.0;  // maps up to this high are shown from floor to ceiling
 constexpr std::size_t kGuidePoints = 150;
 
 constexpr Color kCorridor{0.16, 0.50, 0.72, 0.10};
@@ -43,7 +44,8 @@ int steps_of(const Trajectory& trajectory) {
 
 void include_polyline(std::vector<Vec3>& points, const std::vector<Vec3>& corners) {
   for (std::size_t i = 0; i + 1 < corners.size(); ++i) {
-    for (int k = 0; k < 10; ++k) points.push_back(corners[i] + (corners[i + 1] - corners[i]) * k / 10);
+    for (int k = 0; k < 10; ++k)
+      points.push_back(corners[i] + (corners[i + 1] - corners[i]) * k / 10);
   }
   if (!corners.empty()) points.push_back(corners.back());
 }
@@ -64,7 +66,8 @@ std::vector<Vec3> way(const Flight& flight) {
 /// At most kGuidePoints of the way, evenly.
 std::vector<Vec3> guide_of(const std::vector<Vec3>& points) {
   std::vector<Vec3> guide;
-  const std::size_t step = std::max<std::size_t>(1, (points.size() + kGuidePoints - 1) / kGuidePoints);
+  const std::size_t step =
+      std::max<std::size_t>(1, (points.size() + kGuidePoints - 1) / kGuidePoints);
   for (std::size_t i = 0; i < points.size(); i += step) guide.push_back(points[i]);
   return guide;
 }
@@ -99,8 +102,14 @@ Interval window(const Flight& flight, const Bounds& around, int axis) {
     map = {grid->geometry.origin_map[axis], grid->geometry.upper_corner_map()[axis]};
   }
   if (around.empty()) return grid != nullptr ? map : Interval{-1.0, 1.0};
+  if (axis == 2 && grid != nullptr && map.length() <= kWholeHeight_m) {
+    map.include(around.lower[axis]);
+    map.include(around.upper[axis]);
+    return map;
+  }
   const double extent = (around.upper - around.lower).maxCoeff();
-  const double room_m = axis == 2 ? std::clamp(0.1 * extent, 0.5, 1.5) : std::max(1.5, 0.12 * extent);
+  const double room_m =
+      axis == 2 ? std::clamp(0.1 * extent, 0.5, 1.5) : std::max(1.5, 0.2 * extent);
   const double edge_m = 2.0 * flight.body_radius_m;
   Interval shown{std::max(map.lo, around.lower[axis] - room_m),
                  std::min(map.hi, around.upper[axis] + room_m)};
@@ -134,7 +143,7 @@ Sheet lay_out(const Interval& u, const Interval& v, bool may_stretch) {
   height = std::max(height, 240.0);
   sheet.area = {{kLeft_px, kTop_px, std::round(width), std::round(height)}, u, v};
   sheet.width_px = int(kLeft_px + std::round(width) + kLegend_px);
-  sheet.height_px = int(kTop_px + std::max(std::round(height), 420.0) + kBottom_px);
+  sheet.height_px = int(kTop_px + std::max(std::round(height), 310.0) + kBottom_px);
   return sheet;
 }
 
@@ -160,6 +169,7 @@ class MapPicture {
     for (const Leg& leg : flight_.legs) paths(leg);
     for (const Leg& leg : flight_.legs) trajectory(leg);
     flown();
+    for (const Leg& leg : flight_.legs) waypoints(leg);
     ends();
     canvas_.unclip();
     title();
@@ -206,6 +216,9 @@ class MapPicture {
   void paths(const Leg& leg) {
     canvas_.polyline(pixels(leg.raw_path_map), {kRawPath, 1.0});
     canvas_.polyline(pixels(leg.waypoints_map), {kPruned, 1.4});
+  }
+
+  void waypoints(const Leg& leg) {
     for (const Vec3& p : leg.waypoints_map) canvas_.dot(pixel(p), 3.2, kWhite, {kPruned, 1.6});
   }
 
@@ -268,10 +281,11 @@ class MapPicture {
     }
     if (duration_s <= 0.0) return;
     char text[160];
-    std::snprintf(text, sizeof text,
-                  "planned %.2f m in %.2f s, mean %.2f m/s, top %.2f m/s (limits %.4g m/s, %.4g m/s\u00b2)",
-                  length_m, duration_s, length_m / duration_s, top_m_s, flight_.limits.v_max_m_s,
-                  flight_.limits.a_max_m_s2);
+    std::snprintf(
+        text, sizeof text,
+        "planned %.2f m in %.2f s, mean %.2f m/s, top %.2f m/s (limits %.4g m/s, %.4g m/s\u00b2)",
+        length_m, duration_s, length_m / duration_s, top_m_s, flight_.limits.v_max_m_s,
+        flight_.limits.a_max_m_s2);
     canvas_.text({left, 52.0}, text, {.size_px = 14.0});
   }
 
@@ -335,8 +349,9 @@ class MapPicture {
     }
     for (int k = 0; k <= 4; ++k) {
       char text[32];
-      std::snprintf(text, sizeof text, "%.3g", fastest_m_s_ * k / 4.0);
-      canvas_.text({x + kWidth * k / 4.0, y + 50.0}, text, {.size_px = 12.0, .align = Align::center});
+      std::snprintf(text, sizeof text, "%.2f", fastest_m_s_ * k / 4.0);
+      canvas_.text({x + kWidth * k / 4.0, y + 50.0}, text,
+                   {.size_px = 12.0, .align = Align::center});
     }
   }
 

@@ -85,7 +85,8 @@ Column look(const Seen& seen, const View& view, int u, int v, Interval depth) {
 }
 
 Color color_of(const Column& column, bool grown_there) {
-  if (column.near_blocked > 0.0) return mix(kBlocked, {0.50, 0.54, 0.60}, 1.0 - column.near_blocked);
+  if (column.near_blocked > 0.0)
+    return mix(kBlocked, {0.50, 0.54, 0.60}, 1.0 - column.near_blocked);
   if (grown_there) return kGrown;
   if (column.share_blocked > 0.0) {
     return mix({0.95, 0.955, 0.96}, {0.76, 0.78, 0.81}, std::sqrt(column.share_blocked));

@@ -17,7 +17,7 @@ struct View {
 
 inline constexpr Color kBlocked{0.28, 0.32, 0.38};
 inline constexpr Color kElsewhere{0.80, 0.82, 0.85};
-inline constexpr Color kGrown{0.96, 0.82, 0.66};
+inline constexpr Color kGrown{0.985, 0.895, 0.79};
 inline constexpr Color kUnknown{0.94, 0.93, 0.90};
 
 /// The voxels of a window as one pixel each. A cell is looked at where the flight passes nearby:

@@ -26,7 +26,8 @@ Polygon clip(const Polygon& polygon, const Vec3& n, double offset_m) {
     const double da = n.dot(a) - offset_m;
     const double db = n.dot(b) - offset_m;
     if (da <= 0.0) kept.push_back(a);
-    if ((da < 0.0 && db > 0.0) || (da > 0.0 && db < 0.0)) kept.push_back(a + da / (da - db) * (b - a));
+    if ((da < 0.0 && db > 0.0) || (da > 0.0 && db < 0.0))
+      kept.push_back(a + da / (da - db) * (b - a));
   }
   return kept;
 }

@@ -108,7 +108,8 @@ class TimePicture {
   explicit TimePicture(const Flight& flight)
       : flight_(flight),
         span_(time_span(flight)),
-        canvas_(kWidth_px, int(kTop_px + kPanels * kPanel_px + (kPanels - 1) * kGap_px + kBottom_px)) {}
+        canvas_(kWidth_px,
+                int(kTop_px + kPanels * kPanel_px + (kPanels - 1) * kGap_px + kBottom_px)) {}
 
   Status draw(const std::filesystem::path& png) {
     const auto states = planned(flight_, span_);
@@ -118,19 +119,21 @@ class TimePicture {
     const LimitNorm norm = flight_.limits.norm;
     const bool whole = norm == LimitNorm::euclidean;
     panel(whole ? "speed [m/s]" : "fastest axis [m/s]",
-          {{"planned", {kPlanned, 2.0}, of_planned(states, [norm](const FlatState& s) {
-              return size_of(s.velocity, norm);
-            })},
-           {"flown", {kFlown, 1.2, 5.0}, of_flown(flight_, [norm](const FlownSample& s) {
-              return size_of(s.velocity_map, norm);
-            })}},
+          {{"planned",
+            {kPlanned, 2.0},
+            of_planned(states, [norm](const FlatState& s) { return size_of(s.velocity, norm); })},
+           {"flown",
+            {kFlown, 1.2, 5.0},
+            of_flown(flight_,
+                     [norm](const FlownSample& s) { return size_of(s.velocity_map, norm); })}},
           flight_.limits.v_max_m_s);
-    panel(whole ? "acceleration [m/s\u00b2]" : "largest axis [m/s\u00b2]",
-          {{"planned", {kPlanned, 2.0}, of_planned(states, [norm](const FlatState& s) {
-              return size_of(s.acceleration, norm);
-            })},
-           {"flown", {kFlown, 1.2, 5.0}, flown_acceleration(flight_)}},
-          flight_.limits.a_max_m_s2);
+    panel(
+        whole ? "acceleration [m/s\u00b2]" : "largest axis [m/s\u00b2]",
+        {{"planned",
+          {kPlanned, 2.0},
+          of_planned(states, [norm](const FlatState& s) { return size_of(s.acceleration, norm); })},
+         {"flown", {kFlown, 1.2, 5.0}, flown_acceleration(flight_)}},
+        flight_.limits.a_max_m_s2);
     panel("tracking error [cm]", {{"distance", {kPlanned, 1.6}, tracking_error_cm(flight_)}},
           std::nullopt);
     return canvas_.save(png);
@@ -142,15 +145,16 @@ class TimePicture {
     for (int axis = 0; axis < 3; ++axis) {
       const std::string name(1, "xyz"[axis]);
       const Color& color = kAxes[std::size_t(axis)];
-      curves.push_back({name + " planned", {color, 2.0}, of_planned(states, [axis](const FlatState& s) {
-                          return s.position[axis];
-                        })});
+      curves.push_back(
+          {name + " planned", {color, 2.0}, of_planned(states, [axis](const FlatState& s) {
+             return s.position[axis];
+           })});
     }
     for (int axis = 0; axis < 3; ++axis) {
-      curves.push_back({axis == 0 ? "flown" : "", {kFlown, 1.2, 5.0},
-                        of_flown(flight_, [axis](const FlownSample& s) {
-                          return s.position_map[axis];
-                        })});
+      curves.push_back(
+          {axis == 0 ? "flown" : "",
+           {kFlown, 1.2, 5.0},
+           of_flown(flight_, [axis](const FlownSample& s) { return s.position_map[axis]; })});
     }
     return curves;
   }

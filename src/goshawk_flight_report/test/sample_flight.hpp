@@ -93,7 +93,8 @@ struct SampleFlight {
       leg.trajectory.pieces.push_back(BezierPiece::between(joints[k], joints[k + 1], segment_s));
       leg.trajectory.pieces.back().polytope = int(k);
       leg.corridor.push_back(around(a, b));
-      for (int i = 0; i < 8; ++i) leg.raw_path_map.push_back(a + (b - a) * i / 8.0 + Vec3(0, 0.1 * (i % 2), 0));
+      for (int i = 0; i < 8; ++i)
+        leg.raw_path_map.push_back(a + (b - a) * i / 8.0 + Vec3(0, 0.1 * (i % 2), 0));
     }
     leg.raw_path_map.push_back(to);
     flight.legs.push_back(std::move(leg));

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "goshawk/core/certificate.hpp"
+#include "goshawk/core/grid_geometry.hpp"
 #include "goshawk/core/polytope.hpp"
 #include "goshawk/core/result.hpp"
 #include "goshawk/core/trajectory.hpp"
-#include "goshawk/core/grid_geometry.hpp"
 
 namespace goshawk::flight_report {
 
