@@ -13,6 +13,16 @@ double polyline_length(const std::vector<Vec3>& points) {
   return sum;
 }
 
+// goshawk::locate builds its sentence before it knows whether one is needed, and so allocates:
+// asked only where there is something to say.
+Result<Index3> find_voxel(const VoxelGrid& map, const Vec3& p_map, Endpoint endpoint) {
+  if (is_finite(p_map)) {
+    const auto index = map.geometry.index_of(p_map);
+    if (index && !map.occupied.get(*index)) return *index;
+  }
+  return locate(map, p_map, endpoint);
+}
+
 }  // namespace
 
 Result<PathSearch> PathSearch::create(const Config& config) {
@@ -47,9 +57,9 @@ Result<PlannedPath> PathSearch::plan(const Vec3& start_map, const Vec3& goal_map
 
 Status PathSearch::plan(const Vec3& start_map, const Vec3& goal_map, PlannedPath& path) {
   if (!map_) return map_error_;
-  const auto start = locate(*map_, start_map, Endpoint::start);
+  const auto start = find_voxel(*map_, start_map, Endpoint::start);
   if (!start) return start.error();
-  const auto goal = locate(*map_, goal_map, Endpoint::goal);
+  const auto goal = find_voxel(*map_, goal_map, Endpoint::goal);
   if (!goal) return goal.error();
   if (rule_ == CornerRule::no_squeeze) {
     if (auto s = check_clear_of_faces(start_map, Endpoint::start); !s) return s;

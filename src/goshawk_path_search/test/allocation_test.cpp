@@ -1,1 +1,53 @@
+// A repeated query must not allocate: operator new of this program counts.
 #include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+#include "goshawk/path_search/path_search.hpp"
+#include "reference.hpp"
+
+namespace {
+std::atomic<long> allocations{0};
+}  // namespace
+
+void* operator new(std::size_t bytes) {
+  ++allocations;
+  if (void* memory = std::malloc(bytes)) return memory;
+  throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+
+namespace goshawk::path_search {
+namespace {
+
+TEST(PathSearch, AllocatesNothingInARepeatedQuery) {
+  for (const std::string planner :
+       {"jastar", "astar", "astar_euclidean", "astar_manhattan", "dijkstra"}) {
+    for (const std::string pruning : {"shortest", "greedy", "none"}) {
+      Config config;
+      config.planner = planner;
+      config.pruning = pruning;
+      reference::Random random(13);
+      auto grid = std::make_shared<VoxelGrid>();
+      grid->occupied = reference::box_map({60, 60, 20}, 0.2, random);
+      grid->geometry.size = grid->occupied.size();
+      const Vec3 start = grid->geometry.center(reference::free_voxel(grid->occupied, random));
+      const Vec3 goal = grid->geometry.center(reference::free_voxel(grid->occupied, random));
+      PathSearch search = std::move(PathSearch::create(config)).value();
+      search.set_map(grid);
+      PlannedPath path;
+      ASSERT_TRUE(search.plan(start, goal, path).ok());
+      const double length = path.pruned_length_m;
+      const long before = allocations;
+      ASSERT_TRUE(search.plan(start, goal, path).ok());
+      EXPECT_EQ(allocations, before) << planner << ", " << pruning;
+      EXPECT_EQ(path.pruned_length_m, length);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace goshawk::path_search

@@ -1,3 +1,140 @@
 #include "goshawk/path_search/move_rules.hpp"
 
 #include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <queue>
+
+#include "reference.hpp"
+
+namespace goshawk::path_search {
+namespace {
+
+using reference::Random;
+constexpr CornerRule kRules[] = {CornerRule::no_squeeze, CornerRule::squeeze};
+constexpr BlockMask kAll = (BlockMask{1} << kDirections) - 1;
+
+MoveRules::Rows rows_of(BlockMask blocked) {
+  MoveRules::Rows rows;
+  for (std::size_t r = 0; r < 9; ++r) rows[r] = std::uint8_t((blocked >> (3 * r)) & 7U);
+  return rows;
+}
+
+BlockMask blocked_bits(const BitGrid& block) {
+  BlockMask mask = 0;
+  for (int d = 0; d < kDirections; ++d) {
+    if (block.get(step_of(d) + Index3{1, 1, 1})) mask |= BlockMask{1} << d;
+  }
+  return mask;
+}
+
+double length_of(int direction) { return std::sqrt(double(axes_changed(direction))); }
+
+// What the canonical order must do at the block's centre, judged by a search of the block.
+void expect_sound(CornerRule rule, int direction, const BitGrid& block) {
+  const bool squeeze = rule == CornerRule::squeeze;
+  const Index3 center{1, 1, 1}, before = center - step_of(direction);
+  if (block.get(center) || block.get(before) ||
+      !reference::move_is_allowed(block, before, center, squeeze)) {
+    return;
+  }
+  BitGrid without_center = block;
+  if (squeeze) without_center.set(center, true);
+  const BlockMask moves = move_rules(rule).successors(direction, rows_of(blocked_bits(block)));
+  for (int d = 0; d < kDirections; ++d) {
+    if (d == kNoDirection) continue;
+    const Index3 target = center + step_of(d);
+    const bool made = (moves >> d & 1U) != 0;
+    const bool allowed = reference::move_is_allowed(block, center, target, squeeze);
+    if (!allowed) {
+      ASSERT_FALSE(made);
+      continue;
+    }
+    // Under no-squeeze a move past the centre needs it free, so it is left in the block; a way
+    // over it is then as long as the one that is judged.
+    const auto around = reference::distances(without_center, before, squeeze);
+    const double other = reference::distance_to(around, block.size(), target);
+    const double through = length_of(direction) + length_of(d);
+    if (!made) {
+      ASSERT_LE(other, through + 1e-12);
+    }
+    if (other < through - 1e-12) {
+      ASSERT_FALSE(made) << direction << " " << d;
+    }
+  }
+}
+
+TEST(MoveRules, PruneOnlyWhatAnotherWayInTheBlockReachesAndAllThatIsReachedSooner) {
+  for (const CornerRule rule : kRules) {
+    Random random(5);
+    for (int n = 0; n < 400; ++n) {
+      const BitGrid block = reference::noise_map({3, 3, 3}, random.uniform(0.05, 0.6), random);
+      for (int d = 0; d < kDirections; ++d) {
+        if (d != kNoDirection) expect_sound(rule, d, block);
+        if (HasFatalFailure()) FAIL() << "block " << n;
+      }
+    }
+  }
+}
+
+// Exhaustive: the lookup gives what the bypass sets say, for every state of the voxels that occur
+// in them.
+TEST(MoveRules, LookUpWhatTheBypassesSay) {
+  for (const CornerRule rule : kRules) {
+    for (int d = 0; d < kDirections; ++d) {
+      std::array<std::vector<BlockMask>, kDirections> ways;
+      BlockMask relevant = 0;
+      for (int t = 0; t < kDirections; ++t) {
+        if (t == kNoDirection) continue;
+        ways[std::size_t(t)] = bypasses(rule, d, t);
+        for (const BlockMask cells : ways[std::size_t(t)]) relevant |= cells;
+      }
+      ASSERT_LE(std::popcount(relevant), 12);
+      BlockMask blocked = 0;
+      do {
+        const BlockMask moves = move_rules(rule).successors(d, rows_of(blocked));
+        for (int t = 0; t < kDirections; ++t) {
+          if (t == kNoDirection) continue;
+          bool needed = (cells_of_move(rule, {}, step_of(t)) & blocked) == 0;
+          for (const BlockMask cells : ways[std::size_t(t)]) needed &= (cells & blocked) != 0;
+          ASSERT_EQ((moves >> t & 1U) != 0, needed) << d << " " << t << " " << blocked;
+        }
+        blocked = (blocked - relevant) & relevant;  // the next subset
+      } while (blocked != 0);
+    }
+  }
+}
+
+// In free space each kind of move has the natural successors of the diagonal-first order: 1, 3, 7.
+TEST(MoveRules, KeepOneThreeOrSevenSuccessorsInFreeSpace) {
+  for (const CornerRule rule : kRules) {
+    for (int d = 0; d < kDirections; ++d) {
+      const int axes = axes_changed(d);
+      const int expected = axes == 0 ? 26 : (1 << axes) - 1;
+      EXPECT_EQ(std::popcount(move_rules(rule).successors(d, rows_of(0))), expected) << d;
+    }
+    EXPECT_EQ(move_rules(rule).successors(kNoDirection, rows_of(kAll)), 0U);
+  }
+}
+
+TEST(MoveCosts, ApproximateRootsTo3In10To11) {
+  EXPECT_NEAR(double(kMoveCost[2]) / double(kMoveCost[1]), std::sqrt(2.0), 3e-11 * std::sqrt(2.0));
+  EXPECT_NEAR(double(kMoveCost[3]) / double(kMoveCost[1]), std::sqrt(3.0), 3e-11 * std::sqrt(3.0));
+}
+
+TEST(Heuristics, NeverDropByMoreThanAMoveCosts) {
+  Random random(6);
+  for (int n = 0; n < 100000; ++n) {
+    const Index3 a{random.below(100), random.below(100), random.below(100)};
+    const Index3 goal{random.below(100), random.below(100), random.below(100)};
+    const int d = random.below(kDirections);
+    const Cost move = kMoveCost[std::size_t(axes_changed(d))];
+    ASSERT_LE(OctileHeuristic{}(a, goal), move + OctileHeuristic{}(a + step_of(d), goal));
+    ASSERT_LE(EuclideanHeuristic{}(a, goal), OctileHeuristic{}(a, goal));
+  }
+}
+
+}  // namespace
+}  // namespace goshawk::path_search
