@@ -26,20 +26,20 @@ double tilt_rad(const Quadrotor& quadrotor) {
   return std::acos(std::min(1.0, (quadrotor.state().q_map_base * Vec3::UnitZ()).z()));
 }
 
-// Flies towards x at 2 m/s by commands alone and returns with the speed reached.
-void fly_at_2_m_s(Quadrotor& quadrotor) {
+// Flies at the given velocity by commands alone, long enough to have reached it.
+void fly_at(Quadrotor& quadrotor, const Vec3& velocity) {
   for (int i = 0; i < 2000; ++i) {
     const auto& s = quadrotor.state();
     const Vec3 force = quadrotor.config().vehicle.mass_kg *
-                       (3.0 * (Vec3(2.0, 0, 0) - s.velocity_map) + Vec3(0.25 * 2.0 + 0.08, 0,
-                        kGravity_m_s2));
+                       (3.0 * (velocity - s.velocity_map) + 0.25 * velocity +
+                        Vec3(0, 0, kGravity_m_s2));
     ThrustAttitude command;
     command.thrust_n = force.norm();
     command.q_map_base = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), force);
     ASSERT_TRUE(quadrotor.command(command));
     advance(quadrotor, 0.004);
   }
-  ASSERT_NEAR(quadrotor.state().velocity_map.x(), 2.0, 0.01);
+  ASSERT_LT((quadrotor.state().velocity_map - velocity).norm(), 0.05);
 }
 
 TEST(Quadrotor, HoversFromTheStartWhereItWasReset) {
@@ -101,7 +101,7 @@ TEST(Quadrotor, RecoversFromUpsideDown) {
 
 TEST(Quadrotor, WithoutCommandsItBrakesFromTwoMetresASecondWithinHalfAMetre) {
   auto quadrotor = make();
-  fly_at_2_m_s(quadrotor);
+  fly_at(quadrotor, {2.0, 0, 0});
   const Vec3 last_command = quadrotor.state().position_map;
   while (quadrotor.control() == Control::commanded) advance(quadrotor, 0.001);
   EXPECT_NEAR(double(quadrotor.time_ns()) * 1e-9, 7.996 + 0.1 + 0.001, 1e-9);
@@ -126,6 +126,23 @@ TEST(Quadrotor, WithoutCommandsItBrakesFromTwoMetresASecondWithinHalfAMetre) {
 
   ASSERT_TRUE(quadrotor.command(hover(quadrotor)));
   EXPECT_EQ(quadrotor.control(), Control::commanded);
+}
+
+TEST(Quadrotor, BrakesInHalfAMetreWhereverItWasHeaded) {
+  for (const Vec3& direction : {Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(1, 1, 0), Vec3(0, 0, 1),
+                                Vec3(0, 0, -1), Vec3(1, -1, 1), Vec3(-1, 0, -1)}) {
+    auto quadrotor = make();
+    fly_at(quadrotor, 2.0 * direction.normalized());
+    while (quadrotor.control() == Control::commanded) advance(quadrotor, 0.001);
+    const Vec3 onset = quadrotor.state().position_map;
+    double farthest = 0.0;
+    for (int i = 0; i < 3000; ++i) {
+      advance(quadrotor, 0.001);
+      farthest = std::max(farthest, (quadrotor.state().position_map - onset).norm());
+    }
+    EXPECT_LT(farthest, 0.5) << to_text(direction);
+    EXPECT_LT(quadrotor.state().velocity_map.norm(), 0.02) << to_text(direction);
+  }
 }
 
 TEST(Quadrotor, BadCommandsAreRefusedAndTheTimeoutRunsOn) {

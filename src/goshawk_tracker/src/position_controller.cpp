@@ -10,6 +10,11 @@ namespace {
 
 const Vec3 kUp_m_s2(0.0, 0.0, kGravity_m_s2);
 
+Vec3 no_longer_than(double most, const Vec3& v) {
+  const double length = v.norm();
+  return length > most ? Vec3(most / length * v) : v;
+}
+
 }  // namespace
 
 PositionController::PositionController(const Config& c)
@@ -19,6 +24,7 @@ PositionController::PositionController(const Config& c)
       max_force_m_s2_(c.max_thrust_n / c.mass_kg),
       max_slope_(std::tan(c.max_tilt_rad)),
       max_feedback_m_s2_(c.max_feedback_m_s2),
+      max_body_rate_rad_s_(c.max_body_rate_rad_s),
       position_gain_1_s2_(c.position_xy_1_s2, c.position_xy_1_s2, c.position_z_1_s2),
       velocity_gain_1_s_(c.velocity_xy_1_s, c.velocity_xy_1_s, c.velocity_z_1_s),
       drag_1_s_(Vec3(c.linear_drag_xy_kg_s, c.linear_drag_xy_kg_s, c.linear_drag_z_kg_s) /
@@ -36,9 +42,10 @@ ThrustAttitude PositionController::step(const RigidBodyState& state, const Targe
   observer_.update(state.velocity_map, acceleration_model, dt_s);
 
   const Vec3 velocity_error = target.now.velocity - state.velocity_map;
+  const Vec3 feedback_now = feedback(target.now.position - state.position_map, velocity_error);
   const Vec3 drag = drag_1_s_.cwiseProduct(target.ahead.velocity);
   const Vec3 force = limited(target.ahead.acceleration + kUp_m_s2 + drag +
-                             feedback(target.now.position - state.position_map, velocity_error) -
+                             no_longer_than(max_feedback_m_s2_, feedback_now) -
                              observer_.disturbance_map());
 
   Vec3 force_rate = target.ahead.jerk + drag_1_s_.cwiseProduct(target.ahead.acceleration);
@@ -50,6 +57,8 @@ ThrustAttitude PositionController::step(const RigidBodyState& state, const Targe
 
   auto command = thrust_attitude_of(force, force_rate, target.yaw_rad, target.yaw_rate_rad_s,
                                     mass_kg_);
+  command.angular_velocity_base =
+      no_longer_than(max_body_rate_rad_s_, command.angular_velocity_base);
   if (geometric_) {
     const double along_z = force.dot(state.q_map_base * Vec3::UnitZ());
     command.thrust_n = mass_kg_ * std::clamp(along_z, min_force_m_s2_, max_force_m_s2_);
@@ -59,10 +68,8 @@ ThrustAttitude PositionController::step(const RigidBodyState& state, const Targe
 }
 
 Vec3 PositionController::feedback(const Vec3& position_error, const Vec3& velocity_error) const {
-  const Vec3 wanted = position_gain_1_s2_.cwiseProduct(position_error) +
-                      velocity_gain_1_s_.cwiseProduct(velocity_error);
-  const double size = wanted.norm();
-  return size > max_feedback_m_s2_ ? Vec3(max_feedback_m_s2_ / size * wanted) : wanted;
+  return position_gain_1_s2_.cwiseProduct(position_error) +
+         velocity_gain_1_s_.cwiseProduct(velocity_error);
 }
 
 // Height first: what the vertical part leaves of thrust and tilt is for the sides.

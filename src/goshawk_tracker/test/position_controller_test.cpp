@@ -88,7 +88,7 @@ TEST(PositionController, WhateverTheErrorThrustAndTiltStayWithinBoundsAndFinite)
       EXPECT_GE(out.thrust_n, config.min_thrust_n - 1e-9);
       EXPECT_LE(out.thrust_n, config.max_thrust_n + 1e-9);
       EXPECT_LE(tilt_rad(out), config.max_tilt_rad + 1e-9);
-      EXPECT_LE(out.angular_velocity_base.norm(), 20.0);
+      EXPECT_LE(out.angular_velocity_base.norm(), config.max_body_rate_rad_s + 1e-9);
     }
   }
 }

@@ -30,6 +30,7 @@ struct Config {
   double disturbance_bandwidth_rad_s = 4.0;
   double max_disturbance_m_s2 = 4.0;
   double max_yaw_rate_rad_s = 1.0;
+  double max_body_rate_rad_s = 10.0;
 
   double start_tolerance_m = 0.3;
   double start_velocity_tolerance_m_s = 0.5;
@@ -80,6 +81,8 @@ void describe(Self& c, Visitor&& visit) {
         "largest unknown acceleration that is cancelled", Range{0.0, 20.0});
   visit("max_yaw_rate_rad_s", c.max_yaw_rate_rad_s, "rad/s", "how fast the vehicle is turned",
         Range::positive(10.0));
+  visit("max_body_rate_rad_s", c.max_body_rate_rad_s, "rad/s",
+        "largest body rate that is asked for beforehand", Range::positive(50.0));
   visit("start_tolerance_m", c.start_tolerance_m, "m",
         "how far from the vehicle, or from the trajectory flown, a new one may begin",
         Range::positive(10.0));

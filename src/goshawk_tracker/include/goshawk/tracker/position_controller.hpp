@@ -46,6 +46,7 @@ class PositionController {
   double max_force_m_s2_;
   double max_slope_;       // tangent of the steepest tilt
   double max_feedback_m_s2_;
+  double max_body_rate_rad_s_;
   Vec3 position_gain_1_s2_;
   Vec3 velocity_gain_1_s_;
   Vec3 drag_1_s_;          // over the mass
