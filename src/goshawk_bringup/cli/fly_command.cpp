@@ -156,14 +156,6 @@ Arguments launch_arguments(const FlyOptions& o, const Preparation& p) {
   return a;
 }
 
-// The domain of this flight: the user's, or one that nobody is in.
-Result<int> choose_domain() {
-  auto options = runtime::ContextOptions::from_environment();
-  if (!options) return options.error();
-  const char* set = std::getenv("ROS_DOMAIN_ID");
-  return set != nullptr && *set != '\0' ? options->domain : 100 + int(getpid() % 100);
-}
-
 class Flight {
  public:
   Flight(const FlyOptions& options, const Preparation& preparation, runtime::Node& node,
@@ -307,7 +299,7 @@ Status check_domain_is_free(runtime::Context& context, runtime::Node& node, int 
 }
 
 Result<Json> fly(const FlyOptions& options, const Preparation& p) {
-  const auto domain = choose_domain();
+  const auto domain = private_domain();
   if (!domain) return domain.error();
   auto context_options = runtime::ContextOptions::from_environment();
   context_options->domain = *domain;

@@ -4,10 +4,12 @@
 #include <signal.h>
 #include <spawn.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <cstring>
 
-#include "install.hpp"
+#include "folders.hpp"
+#include "goshawk/runtime/context.hpp"
 
 namespace goshawk::cli {
 namespace {
@@ -32,6 +34,13 @@ std::vector<char*> pointers_to(std::vector<std::string>& words) {
 }
 
 }  // namespace
+
+Result<int> private_domain() {
+  const auto options = runtime::ContextOptions::from_environment();
+  if (!options) return options.error();
+  const char* set = std::getenv("ROS_DOMAIN_ID");
+  return set != nullptr && *set != '\0' ? options->domain : 100 + int(getpid() % 100);
+}
 
 Result<LaunchProcess> LaunchProcess::start(const Arguments& launch_arguments, int domain,
                                            const std::string& output_file) {

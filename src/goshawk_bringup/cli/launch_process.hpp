@@ -9,6 +9,9 @@
 
 namespace goshawk::cli {
 
+/// The domain to work in: ROS_DOMAIN_ID where it is set, else one made from this process' id.
+Result<int> private_domain();
+
 /// A `goshawk launch` as a child of this process, in a process group of its own.
 class LaunchProcess {
  public:

@@ -1,10 +1,8 @@
-#include <unistd.h>
-
 #include <cstdio>
 #include <filesystem>
 
+#include "folders.hpp"
 #include "goshawk/flight_report/files.hpp"
-#include "goshawk/flight_report/draw.hpp"
 #include "map_options.hpp"
 #include "plan_json.hpp"
 #include "verbs.hpp"
@@ -18,25 +16,6 @@ struct Options {
   std::string goal = "3,8,2";
   std::string save;
   bool json = false;
-};
-
-// A folder that goes away with this object.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "goshawk-XXXXXX").string();
-    if (mkdtemp(pattern.data()) != nullptr) path_ = pattern;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    if (!path_.empty()) std::filesystem::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
 };
 
 void print(const Plan& plan) {

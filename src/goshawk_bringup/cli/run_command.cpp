@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <cstring>
 
-#include "install.hpp"
+#include "folders.hpp"
 #include "verbs.hpp"
 
 namespace goshawk::cli {

@@ -10,5 +10,6 @@ int world_command(const Arguments& arguments);
 int fly_command(const Arguments& arguments);
 int run_command(const Arguments& arguments);
 int launch_command(const Arguments& arguments);
+int bench_command(const Arguments& arguments);
 
 }  // namespace goshawk::cli
