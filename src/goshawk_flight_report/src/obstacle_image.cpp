@@ -43,13 +43,15 @@ class Seen {
   View view_;
 };
 
+/// Seen from the side, height counts little: above and below a place, that place's depth holds.
 double nearest_depth(const std::vector<Vec3>& guide, const View& view, double u, double v) {
+  const double weight_v = view.v == 2 ? 0.1 : 1.0;
   double best = std::numeric_limits<double>::infinity();
   double depth = 0.0;
   for (const Vec3& p : guide) {
     const double du = p[view.u] - u;
     const double dv = p[view.v] - v;
-    const double d = du * du + dv * dv;
+    const double d = du * du + weight_v * dv * dv;
     if (d < best) {
       best = d;
       depth = p[view.w];
