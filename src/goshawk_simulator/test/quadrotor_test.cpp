@@ -32,16 +32,18 @@ double tilt_rad(const Quadrotor& quadrotor) {
 void fly_at(Quadrotor& quadrotor, const Vec3& velocity) {
   for (int i = 0; i < 2000; ++i) {
     const auto& s = quadrotor.state();
-    const Vec3 force =
-        quadrotor.config().vehicle.mass_kg *
-        (3.0 * (velocity - s.velocity_map) + 0.25 * velocity + Vec3(0, 0, kGravity_m_s2));
+    const Vec3 drag =
+        Vec3(0.25, 0.25, 0.15).cwiseProduct(velocity) + 0.02 * velocity.norm() * velocity;
+    const Vec3 force = quadrotor.config().vehicle.mass_kg *
+                           (3.0 * (velocity - s.velocity_map) + Vec3(0, 0, kGravity_m_s2)) +
+                       drag;
     ThrustAttitude command;
     command.thrust_n = force.norm();
     command.q_map_base = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), force);
     ASSERT_TRUE(quadrotor.command(command));
     advance(quadrotor, 0.004);
   }
-  ASSERT_LT((quadrotor.state().velocity_map - velocity).norm(), 0.05);
+  ASSERT_LT((quadrotor.state().velocity_map - velocity).norm(), 0.01);
 }
 
 TEST(Quadrotor, HoversFromTheStartWhereItWasReset) {
