@@ -51,9 +51,10 @@ Vec4 Mixer::allocate(const Wrench& wanted) const {
 
   const double lowest = -tilt.minCoeff();
   const double highest = std::max(lowest, max_n_ - tilt.maxCoeff());
-  const double reserve = std::min({std::abs(yaw[0]), kYawReserve * max_n_,
-                                   (highest - lowest) / 2.0});
-  const double mean = std::clamp(wanted.thrust_n / 4.0, lowest + reserve, highest - reserve);
+  const double reserve =
+      std::min({std::abs(yaw[0]), kYawReserve * max_n_, (highest - lowest) / 2.0});
+  const double mean =
+      std::max(lowest + reserve, std::min(highest - reserve, wanted.thrust_n / 4.0));
 
   const Vec4 thrust = (tilt.array() + mean).cwiseMax(0.0).cwiseMin(max_n_).matrix();
   const Vec4 all = thrust + share_that_fits(thrust, yaw, max_n_) * yaw;

@@ -81,8 +81,8 @@ Packed Plant::derivative(const Packed& x, const Vec4& rotor_command_rad_s,
   dx.segment<3>(0) = s.body.velocity_map;
   dx.segment<3>(3) = R_map_base * force_base / p.mass_kg - Vec3(0.0, 0.0, kGravity_m_s2);
   dx.segment<4>(6) = 0.5 * (s.body.q_map_base * omega_q).coeffs();
-  dx.segment<3>(10) = inverse_inertia_ * (wrench.torque_base_nm -
-                                          omega.cross(inertia_kg_m2_ * omega));
+  dx.segment<3>(10) =
+      inverse_inertia_ * (wrench.torque_base_nm - omega.cross(inertia_kg_m2_ * omega));
   dx.segment<4>(13) = (rotor_command_rad_s - s.rotor_speed_rad_s) / p.motor_time_constant_s;
   return dx;
 }

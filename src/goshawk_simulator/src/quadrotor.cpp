@@ -55,15 +55,15 @@ Quadrotor::Quadrotor(const Config& config)
 
 Status Quadrotor::reset(const Vec3& position_map, double yaw_rad) {
   if (!position_map.allFinite() || !std::isfinite(yaw_rad)) {
-    return fail(ErrorCode::invalid_input,
-                "cannot reset to " + to_text(position_map) + " with yaw " +
-                    std::to_string(yaw_rad) + " rad: position and yaw must be finite");
+    return fail(ErrorCode::invalid_input, "cannot reset to " + to_text(position_map) +
+                                              " with yaw " + std::to_string(yaw_rad) +
+                                              " rad: position and yaw must be finite");
   }
   state_ = PlantState{};
   state_.body.position_map = position_map;
   state_.body.q_map_base = Eigen::AngleAxisd(yaw_rad, Vec3::UnitZ());
-  state_.rotor_speed_rad_s = plant_.rotor_speed_rad_s(
-      Eigen::Vector4d::Constant(config_.vehicle.weight_n() / 4.0));
+  state_.rotor_speed_rad_s =
+      plant_.rotor_speed_rad_s(Eigen::Vector4d::Constant(config_.vehicle.weight_n() / 4.0));
   wind_ = Wind(wind_of(config_), kStep_s);
   hold_.engage_at(position_map, yaw_rad);
   control_ = Control::failsafe;
@@ -91,8 +91,8 @@ Status Quadrotor::advance(double dt_s) {
 }
 
 void Quadrotor::step() {
-  const auto wrench = attitude_control(config_.attitude, plant_.inertia_kg_m2(), state_.body,
-                                       onboard_target());
+  const auto wrench =
+      attitude_control(config_.attitude, plant_.inertia_kg_m2(), state_.body, onboard_target());
   const auto rotor_command = plant_.rotor_speed_rad_s(plant_.mixer().allocate(wrench));
   state_ = plant_.step(state_, rotor_command, wind_.velocity_map(), kStep_s);
   wind_.step();

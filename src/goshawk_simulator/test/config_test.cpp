@@ -13,7 +13,9 @@ namespace {
 
 using testing::HasSubstr;
 
-TEST(Config, DefaultsAreValid) { EXPECT_TRUE(check(Config{})); }
+TEST(Config, DefaultsAreValid) {
+  EXPECT_TRUE(check(Config{}));
+}
 
 TEST(Config, NamesAreUniqueAndValuesCanBeWritten) {
   Config config;

@@ -43,8 +43,8 @@ TEST(Mixer, NeverAsksForMoreThanAMotorHasAndKeepsRollAndPitchWhenSaturated) {
     EXPECT_GE(thrust.minCoeff(), 0.0);
     EXPECT_LE(thrust.maxCoeff(), parameters.max_motor_thrust_n);
     const Vec3 given = mixer.wrench(thrust).torque_base_nm;
-    const double spread = (std::abs(wanted.torque_base_nm.x()) +
-                           std::abs(wanted.torque_base_nm.y())) / (2.0 * lever);
+    const double spread =
+        (std::abs(wanted.torque_base_nm.x()) + std::abs(wanted.torque_base_nm.y())) / (2.0 * lever);
     const double share = std::min(1.0, parameters.max_motor_thrust_n / spread);
     EXPECT_NEAR(given.x(), share * wanted.torque_base_nm.x(), 1e-9);
     EXPECT_NEAR(given.y(), share * wanted.torque_base_nm.y(), 1e-9);

@@ -119,8 +119,9 @@ TEST(Plant, AccelerationIsTheDerivativeOfVelocity) {
   const Vec3 wind(2.0, 0.0, -1.0);
   const double h = 1e-5;
   const auto next = plant.step(s, s.rotor_speed_rad_s, wind, h);
-  EXPECT_LT(((next.body.velocity_map - s.body.velocity_map) / h -
-             plant.acceleration_map(s, wind)).norm(), 1e-3);
+  EXPECT_LT(
+      ((next.body.velocity_map - s.body.velocity_map) / h - plant.acceleration_map(s, wind)).norm(),
+      1e-3);
 }
 
 }  // namespace

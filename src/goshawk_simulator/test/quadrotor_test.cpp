@@ -16,7 +16,9 @@ Quadrotor make(const Config& config = {}) {
   return std::move(quadrotor).value();
 }
 
-void advance(Quadrotor& quadrotor, double dt_s) { ASSERT_TRUE(quadrotor.advance(dt_s)); }
+void advance(Quadrotor& quadrotor, double dt_s) {
+  ASSERT_TRUE(quadrotor.advance(dt_s));
+}
 
 ThrustAttitude hover(const Quadrotor& quadrotor) {
   return {.thrust_n = quadrotor.config().vehicle.weight_n()};
@@ -30,16 +32,18 @@ double tilt_rad(const Quadrotor& quadrotor) {
 void fly_at(Quadrotor& quadrotor, const Vec3& velocity) {
   for (int i = 0; i < 2000; ++i) {
     const auto& s = quadrotor.state();
+    const Vec3 drag =
+        Vec3(0.25, 0.25, 0.15).cwiseProduct(velocity) + 0.02 * velocity.norm() * velocity;
     const Vec3 force = quadrotor.config().vehicle.mass_kg *
-                       (3.0 * (velocity - s.velocity_map) + 0.25 * velocity +
-                        Vec3(0, 0, kGravity_m_s2));
+                           (3.0 * (velocity - s.velocity_map) + Vec3(0, 0, kGravity_m_s2)) +
+                       drag;
     ThrustAttitude command;
     command.thrust_n = force.norm();
     command.q_map_base = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), force);
     ASSERT_TRUE(quadrotor.command(command));
     advance(quadrotor, 0.004);
   }
-  ASSERT_LT((quadrotor.state().velocity_map - velocity).norm(), 0.05);
+  ASSERT_LT((quadrotor.state().velocity_map - velocity).norm(), 0.01);
 }
 
 TEST(Quadrotor, HoversFromTheStartWhereItWasReset) {
@@ -56,7 +60,8 @@ TEST(Quadrotor, HoversFromTheStartWhereItWasReset) {
 TEST(Quadrotor, TakesTheCommandedAttitudeAndThrust) {
   auto quadrotor = make();
   ThrustAttitude command{.thrust_n = 12.0};
-  command.q_map_base = Eigen::AngleAxisd(0.5, Vec3::UnitY()) * Eigen::AngleAxisd(0.3, Vec3::UnitX());
+  command.q_map_base =
+      Eigen::AngleAxisd(0.5, Vec3::UnitY()) * Eigen::AngleAxisd(0.3, Vec3::UnitX());
   for (int i = 0; i < 250; ++i) {
     ASSERT_TRUE(quadrotor.command(command));
     advance(quadrotor, 0.004);
@@ -178,8 +183,8 @@ TEST(Quadrotor, TheHardestCommandsLeaveTheStateFinite) {
     command.q_map_base = Eigen::Quaterniond(random.uniform(-1, 1), random.uniform(-1, 1),
                                             random.uniform(-1, 1), random.uniform(-1, 1));
     command.q_map_base.normalize();
-    command.angular_velocity_base = Vec3(random.uniform(-50, 50), random.uniform(-50, 50),
-                                         random.uniform(-50, 50));
+    command.angular_velocity_base =
+        Vec3(random.uniform(-50, 50), random.uniform(-50, 50), random.uniform(-50, 50));
     ASSERT_TRUE(quadrotor.command(command));
     advance(quadrotor, 0.005);
     ASSERT_TRUE(quadrotor.state().is_finite());

@@ -45,10 +45,10 @@ TEST(VehicleParameters, EachValueThatNoVehicleHasIsRefused) {
       [](auto& p) { p.mass_kg = -1.0; },
       [&](auto& p) { p.mass_kg = infinity; },
       [](auto& p) { p.inertia_zz_kg_m2 = 0.0; },
-      [](auto& p) { p.inertia_zz_kg_m2 = 0.0161; },       // above Ixx + Iyy
-      [](auto& p) { p.inertia_xy_kg_m2 = 0.009; },        // indefinite
+      [](auto& p) { p.inertia_zz_kg_m2 = 0.0161; },  // above Ixx + Iyy
+      [](auto& p) { p.inertia_xy_kg_m2 = 0.009; },   // indefinite
       [](auto& p) { p.inertia_yz_kg_m2 = std::nan(""); },
-      [](auto& p) { p.max_motor_thrust_n = 2.4; },        // 9.6 N under a weight of 9.8 N
+      [](auto& p) { p.max_motor_thrust_n = 2.4; },  // 9.6 N under a weight of 9.8 N
       [](auto& p) { p.thrust_coefficient_n_s2 = 0.0; },
       [](auto& p) { p.torque_coefficient_nm_s2 = -1e-7; },
       [](auto& p) { p.linear_drag_xy_kg_s = -0.1; },

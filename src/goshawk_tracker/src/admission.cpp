@@ -8,7 +8,7 @@
 namespace goshawk::tracker {
 namespace {
 
-constexpr double kAtRest = 1e-3;              // [m/s], [m/s^2]
+constexpr double kAtRest = 1e-3;                                   // [m/s], [m/s^2]
 constexpr std::int64_t kTimeBound_ns = 4'000'000'000'000'000'000;  // differences do not overflow
 
 Error refuse(const CommittedTrajectory& committed, ErrorCode code, const std::string& why) {

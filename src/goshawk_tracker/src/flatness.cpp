@@ -25,8 +25,8 @@ ThrustAttitude thrust_attitude_of(const Vec3& specific_force_map,
 
   Eigen::Matrix3d R_map_base;
   R_map_base << x, y, z;
-  return {mass_kg * force, Eigen::Quaterniond(R_map_base).normalized(),
-          {omega_x, omega_y, omega_z}};
+  return {
+      mass_kg * force, Eigen::Quaterniond(R_map_base).normalized(), {omega_x, omega_y, omega_z}};
 }
 
 double yaw_of(const Eigen::Quaterniond& q_map_base) {

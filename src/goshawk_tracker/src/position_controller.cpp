@@ -44,9 +44,9 @@ ThrustAttitude PositionController::step(const RigidBodyState& state, const Targe
   const Vec3 velocity_error = target.now.velocity - state.velocity_map;
   const Vec3 feedback_now = feedback(target.now.position - state.position_map, velocity_error);
   const Vec3 drag = drag_1_s_.cwiseProduct(target.ahead.velocity);
-  const Vec3 force = limited(target.ahead.acceleration + kUp_m_s2 + drag +
-                             no_longer_than(max_feedback_m_s2_, feedback_now) -
-                             observer_.disturbance_map());
+  const Vec3 force =
+      limited(target.ahead.acceleration + kUp_m_s2 + drag +
+              no_longer_than(max_feedback_m_s2_, feedback_now) - observer_.disturbance_map());
 
   Vec3 force_rate = target.ahead.jerk + drag_1_s_.cwiseProduct(target.ahead.acceleration);
   if (geometric_) {
@@ -55,8 +55,8 @@ ThrustAttitude PositionController::step(const RigidBodyState& state, const Targe
     force_rate += feedback(velocity_error, acceleration_error);
   }
 
-  auto command = thrust_attitude_of(force, force_rate, target.yaw_rad, target.yaw_rate_rad_s,
-                                    mass_kg_);
+  auto command =
+      thrust_attitude_of(force, force_rate, target.yaw_rad, target.yaw_rate_rad_s, mass_kg_);
   command.angular_velocity_base =
       no_longer_than(max_body_rate_rad_s_, command.angular_velocity_base);
   if (geometric_) {
@@ -77,8 +77,7 @@ Vec3 PositionController::limited(Vec3 force) const {
   force.z() = std::clamp(force.z(), min_force_m_s2_, max_force_m_s2_);
   const double side = force.head<2>().norm();
   const double side_max = std::min(
-      force.z() * max_slope_,
-      std::sqrt(max_force_m_s2_ * max_force_m_s2_ - force.z() * force.z()));
+      force.z() * max_slope_, std::sqrt(max_force_m_s2_ * max_force_m_s2_ - force.z() * force.z()));
   if (side > side_max) force.head<2>() *= side_max / side;
   return force;
 }

@@ -8,7 +8,9 @@ namespace {
 
 constexpr double kShortestBrake_s = 0.5;
 
-double seconds(std::int64_t from_ns, std::int64_t to_ns) { return double(to_ns - from_ns) * 1e-9; }
+double seconds(std::int64_t from_ns, std::int64_t to_ns) {
+  return double(to_ns - from_ns) * 1e-9;
+}
 
 }  // namespace
 
@@ -28,8 +30,8 @@ Reference Reference::follow(CommittedTrajectory committed) {
 void Reference::brake(std::int64_t now_ns, double deceleration_m_s2) {
   if (!committed_ || brake_ || at_rest(now_ns)) return;
   const double speed = at(now_ns).velocity.norm();
-  brake_ = Brake{now_ns, path_time(now_ns).s,
-                 std::max(kShortestBrake_s, speed / deceleration_m_s2)};
+  brake_ =
+      Brake{now_ns, path_time(now_ns).s, std::max(kShortestBrake_s, speed / deceleration_m_s2)};
 }
 
 Reference::PathTime Reference::path_time(std::int64_t time_ns) const {
@@ -54,10 +56,10 @@ FlatState Reference::at(std::int64_t time_ns) const {
   if (t.s >= duration_s_) return {.position = pieces.back().control_points.col(5)};
   // Chain rule: the path's derivatives by its own time, times those of that time.
   const FlatState on_path = committed_->trajectory.sample(t.s);
-  return {on_path.position, t.rate * on_path.velocity,
-          t.rate * t.rate * on_path.acceleration + t.rate_1_s * on_path.velocity,
-          t.rate * t.rate * t.rate * on_path.jerk +
-              3.0 * t.rate * t.rate_1_s * on_path.acceleration};
+  return {
+      on_path.position, t.rate * on_path.velocity,
+      t.rate * t.rate * on_path.acceleration + t.rate_1_s * on_path.velocity,
+      t.rate * t.rate * t.rate * on_path.jerk + 3.0 * t.rate * t.rate_1_s * on_path.acceleration};
 }
 
 bool Reference::at_rest(std::int64_t time_ns) const {

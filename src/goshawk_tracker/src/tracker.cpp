@@ -12,7 +12,9 @@ namespace {
 
 constexpr std::int64_t kTimeBound_ns = 4'000'000'000'000'000'000;  // differences do not overflow
 
-double seconds(std::int64_t from_ns, std::int64_t to_ns) { return double(to_ns - from_ns) * 1e-9; }
+double seconds(std::int64_t from_ns, std::int64_t to_ns) {
+  return double(to_ns - from_ns) * 1e-9;
+}
 
 bool within_bound(std::int64_t time_ns) {
   return time_ns >= -kTimeBound_ns && time_ns <= kTimeBound_ns;
@@ -28,10 +30,14 @@ std::string number(double value) {
 
 std::string_view to_string(Mode mode) {
   switch (mode) {
-    case Mode::idle: return "idle";
-    case Mode::hold: return "hold";
-    case Mode::follow: return "follow";
-    case Mode::brake: return "brake";
+    case Mode::idle:
+      return "idle";
+    case Mode::hold:
+      return "hold";
+    case Mode::follow:
+      return "follow";
+    case Mode::brake:
+      return "brake";
   }
   throw std::logic_error("to_string() of no Mode");
 }
@@ -86,12 +92,11 @@ Status Tracker::check_start(const CommittedTrajectory& committed, std::int64_t n
       is_near(vehicle, state_.velocity_map)) {
     return success();
   }
-  return refuse(
-      ErrorCode::not_at_start,
-      "it begins at " + to_text(joint.position) + " m with " + to_text(joint.velocity) +
-          " m/s, while the vehicle is to be at " + to_text(present.position) + " m with " +
-          to_text(present.velocity) + " m/s then and is now at " + to_text(state_.position_map) +
-          " m; plan from there");
+  return refuse(ErrorCode::not_at_start,
+                "it begins at " + to_text(joint.position) + " m with " + to_text(joint.velocity) +
+                    " m/s, while the vehicle is to be at " + to_text(present.position) +
+                    " m with " + to_text(present.velocity) + " m/s then and is now at " +
+                    to_text(state_.position_map) + " m; plan from there");
 }
 
 void Tracker::brake(std::int64_t now_ns) {
@@ -133,7 +138,8 @@ Status Tracker::check_odometry(const RigidBodyState& state, std::int64_t stamp_n
   }
   const double age_s = seconds(stamp_ns, now_ns);
   if (age_s < -config_.odometry_timeout_s) {
-    return invalid("it is stamped " + number(-age_s) + " s in the future; are the clocks the same?");
+    return invalid("it is stamped " + number(-age_s) +
+                   " s in the future; are the clocks the same?");
   }
   if (age_s > config_.odometry_timeout_s) {
     return fail(ErrorCode::tracking_lost, "odometry is " + number(age_s) + " s old, more than " +
@@ -202,9 +208,10 @@ void Tracker::watch_error(std::int64_t now_ns) {
   ++samples_;
   if (lost_ || error_m_ <= config_.max_error_m) return;
   lost_ = true;
-  fault_ = fail(ErrorCode::tracking_lost,
-                "the vehicle is " + number(error_m_) + " m from where it should be, more than " +
-                    number(config_.max_error_m) + " m: stopping on the path; plan again from there");
+  fault_ =
+      fail(ErrorCode::tracking_lost,
+           "the vehicle is " + number(error_m_) + " m from where it should be, more than " +
+               number(config_.max_error_m) + " m: stopping on the path; plan again from there");
   brake(now_ns);
 }
 

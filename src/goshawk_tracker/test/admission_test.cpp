@@ -43,8 +43,7 @@ TEST(Admission, EachWayToBeWrongIsRefusedWithItsCodeAndASentence) {
       {"NaN yaw", ErrorCode::invalid_input, "yaw", [&](auto& c) { c.yaw_rad = nan; }},
       {"start time", ErrorCode::invalid_input, "clocks",
        [](auto& c) { c.start_time_ns = std::numeric_limits<std::int64_t>::min(); }},
-      {"limits", ErrorCode::invalid_limits, "v_max",
-       [](auto& c) { c.limits.v_max_m_s = -1.0; }},
+      {"limits", ErrorCode::invalid_limits, "v_max", [](auto& c) { c.limits.v_max_m_s = -1.0; }},
       {"no polytope", ErrorCode::invalid_input, "names polytope 0 of 0",
        [](auto& c) { c.polytopes.clear(); }},
       {"wrong polytope", ErrorCode::invalid_input, "names polytope -1",
@@ -54,7 +53,9 @@ TEST(Admission, EachWayToBeWrongIsRefusedWithItsCodeAndASentence) {
       {"NaN polytope", ErrorCode::invalid_input, "polytope 0",
        [&](auto& c) { c.polytopes[0].b[0] = nan; }},
       {"outside", ErrorCode::not_certified, "position",
-       [](auto& c) { c.polytopes[0] = Polytope::box({-9, -9, 0}, {9, 0.5, 9}); }},
+       [](auto& c) {
+         c.polytopes[0] = Polytope::box({-9, -9, 0}, {9, 0.5, 9});
+       }},
       {"too fast", ErrorCode::not_certified, "velocity",
        [](auto& c) { c.limits.v_max_m_s *= 0.9; }},
       {"too hard", ErrorCode::not_certified, "acceleration",
@@ -72,8 +73,7 @@ TEST(Admission, EachWayToBeWrongIsRefusedWithItsCodeAndASentence) {
          c.trajectory.pieces.pop_back();
          certify_as_is(c);
        }},
-      {"beyond thrust", ErrorCode::trajectory_infeasible, "lower a_max",
-       [](auto& c) {
+      {"beyond thrust", ErrorCode::trajectory_infeasible, "lower a_max", [](auto& c) {
          for (auto& piece : c.trajectory.pieces) piece.duration_s *= 0.3;
          certify_as_is(c);
        }}};

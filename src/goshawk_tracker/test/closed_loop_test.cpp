@@ -29,8 +29,9 @@ struct Worst {
 };
 
 // Twenty random flights; the first two seconds are for the wind to be learnt.
-Worst fly_many(const Config& config, const simulator::Config& vehicle,
-               const std::function<Link(Random&)>& link = [](Random&) { return Link{}; }) {
+Worst fly_many(
+    const Config& config, const simulator::Config& vehicle,
+    const std::function<Link(Random&)>& link = [](Random&) { return Link{}; }) {
   Worst worst;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     Random random(seed), link_random(1000 + seed);
@@ -120,8 +121,8 @@ TEST_P(ClosedLoopTest, RecoversFromATiltOfThirtyDegrees) {
     ASSERT_TRUE(loop.vehicle.command(tilted));
     ASSERT_TRUE(loop.vehicle.advance(0.001));
   }
-  const double tilt = loop.vehicle.state().q_map_base.angularDistance(
-      Eigen::Quaterniond::Identity());
+  const double tilt =
+      loop.vehicle.state().q_map_base.angularDistance(Eigen::Quaterniond::Identity());
   ASSERT_GT(tilt, 0.5);
   const Vec3 here = loop.vehicle.state().position_map;
   double farthest = 0.0;

@@ -10,7 +10,9 @@
 namespace goshawk::tracker {
 namespace {
 
-TEST(Config, DefaultsAreValid) { EXPECT_TRUE(check(Config{})); }
+TEST(Config, DefaultsAreValid) {
+  EXPECT_TRUE(check(Config{}));
+}
 
 TEST(Config, NamesAreUniqueAndEveryParameterIsExplained) {
   std::set<std::string> names;
@@ -30,8 +32,8 @@ TEST(Config, EveryFaultStopsTheCreationWithOneSentence) {
   const auto tracker = Tracker::create(config);
   ASSERT_FALSE(tracker);
   EXPECT_EQ(tracker.code(), ErrorCode::invalid_parameter);
-  for (const char* part : {"'lqr'", "geometric", "does not lift", "position_xy_1_s2",
-                           "odometry_timeout_s"}) {
+  for (const char* part :
+       {"'lqr'", "geometric", "does not lift", "position_xy_1_s2", "odometry_timeout_s"}) {
     EXPECT_THAT(tracker.error().message, testing::HasSubstr(part));
   }
 }

@@ -93,9 +93,8 @@ TEST(FailuresInFlight, BrakingOnDemandStaysOnThePath) {
   auto& loop = flight.loop;
   const double begin = loop.vehicle.state().position_map.y();
   loop.tracker.brake(loop.vehicle.time_ns());
-  loop.run_until(loop.vehicle.time_ns() + 3 * kSecond, [&] {
-    EXPECT_LT(std::abs(loop.vehicle.state().position_map.x()), 0.02);
-  });
+  loop.run_until(loop.vehicle.time_ns() + 3 * kSecond,
+                 [&] { EXPECT_LT(std::abs(loop.vehicle.state().position_map.x()), 0.02); });
   EXPECT_NEAR(loop.vehicle.state().position_map.y() - begin, 1.0, 0.05);  // v^2 / 2a
   EXPECT_EQ(loop.tracker.status().mode, Mode::hold);
 }

@@ -17,8 +17,9 @@ Vec3 random_vector(Random& random, double size) {
 TEST(Flatness, HoverNeedsTheWeightAsThrustAndNoTilt) {
   const auto out = thrust_attitude_of({0, 0, kGravity_m_s2}, Vec3::Zero(), 0.8, 0.0, 1.3);
   EXPECT_NEAR(out.thrust_n, 1.3 * kGravity_m_s2, 1e-12);
-  EXPECT_LT(out.q_map_base.angularDistance(
-                Eigen::Quaterniond(Eigen::AngleAxisd(0.8, Vec3::UnitZ()))), 1e-12);
+  EXPECT_LT(
+      out.q_map_base.angularDistance(Eigen::Quaterniond(Eigen::AngleAxisd(0.8, Vec3::UnitZ()))),
+      1e-12);
   EXPECT_EQ(out.angular_velocity_base, Vec3::Zero());
 }
 

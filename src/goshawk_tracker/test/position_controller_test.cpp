@@ -45,8 +45,10 @@ TEST(PositionController, OnATrajectoryItAsksForTheForceThatFliesItAgainstTheKnow
   const Vec3 force = flat.acceleration + Vec3(0, 0, kGravity_m_s2) + drag;
   EXPECT_LT((out.thrust_n * (out.q_map_base * Vec3::UnitZ()) - force).norm(), 1e-9);
   const Vec3 rate = flat.jerk + Vec3(0.25, 0.25, 0.15).cwiseProduct(flat.acceleration);
-  EXPECT_LT((out.angular_velocity_base -
-             thrust_attitude_of(force, rate, 0, 0, 1.0).angular_velocity_base).norm(), 1e-12);
+  EXPECT_LT(
+      (out.angular_velocity_base - thrust_attitude_of(force, rate, 0, 0, 1.0).angular_velocity_base)
+          .norm(),
+      1e-12);
 }
 
 TEST(PositionController, ErrorsActWithTheirGains) {

@@ -9,7 +9,9 @@
 namespace goshawk::tracker {
 namespace {
 
-std::int64_t ns(double s) { return std::llround(s * 1e9); }
+std::int64_t ns(double s) {
+  return std::llround(s * 1e9);
+}
 
 Reference make(std::int64_t start_ns) {
   Random random(3);

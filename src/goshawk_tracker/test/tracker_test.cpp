@@ -13,9 +13,13 @@ namespace {
 
 using testing::HasSubstr;
 
-std::int64_t ns(double s) { return std::llround(s * 1e9); }
+std::int64_t ns(double s) {
+  return std::llround(s * 1e9);
+}
 
-Tracker make(const Config& config = {}) { return Tracker::create(config).value(); }
+Tracker make(const Config& config = {}) {
+  return Tracker::create(config).value();
+}
 
 RigidBodyState at(const Vec3& p, const Vec3& v = Vec3::Zero()) {
   RigidBodyState state;
@@ -153,8 +157,8 @@ TEST(Tracker, RefusesWhatDoesNotStartWhereTheVehicleIsAndFliesOn) {
   refused(line(2, {0, 1, 1}, {4, 0, 1}, 1.0), ErrorCode::not_at_start, "plan from there");
   refused(line(3, {3, 0, 1}, {4, 0, 1}, 2.0), ErrorCode::not_at_start, "trajectory 3");
   // At the right place, but at rest where the vehicle will fly at 2 m/s.
-  refused(line(4, flown.trajectory.sample(2.0).position, {4, 0, 1}, 2.0),
-          ErrorCode::not_at_start, "m/s");
+  refused(line(4, flown.trajectory.sample(2.0).position, {4, 0, 1}, 2.0), ErrorCode::not_at_start,
+          "m/s");
   refused(line(5, {0, 0, 1}, {4, 0, 1}, -10.0), ErrorCode::deadline_exceeded, "ended 7 s ago");
   auto uncertified = replanned(6, flown, 1.5, {4, 1, 1});
   uncertified.limits.v_max_m_s = 0.5;
@@ -195,9 +199,9 @@ TEST(Tracker, BadOdometryGivesAnErrorAndNeverACommand) {
   EXPECT_EQ(tracker.status().fault.code, ErrorCode::invalid_input);
 
   state = at({0, 0, 1});
-  EXPECT_EQ(tracker.step(state, ns(10.0), ns(10.2)).code(), ErrorCode::tracking_lost);   // stale
-  EXPECT_EQ(tracker.step(state, ns(10.5), ns(10.2)).code(), ErrorCode::invalid_input);   // future
-  EXPECT_EQ(tracker.step(state, ns(9.95), ns(10.0)).code(), ErrorCode::invalid_input);   // older
+  EXPECT_EQ(tracker.step(state, ns(10.0), ns(10.2)).code(), ErrorCode::tracking_lost);  // stale
+  EXPECT_EQ(tracker.step(state, ns(10.5), ns(10.2)).code(), ErrorCode::invalid_input);  // future
+  EXPECT_EQ(tracker.step(state, ns(9.95), ns(10.0)).code(), ErrorCode::invalid_input);  // older
   EXPECT_EQ(tracker.step(state, std::numeric_limits<std::int64_t>::min(), 0).code(),
             ErrorCode::invalid_input);
   ASSERT_TRUE(tracker.step(state, ns(10.25)));

@@ -30,14 +30,14 @@ CommittedTrajectory random_trajectory(Random& random, const Vec3& start, int pie
   std::vector<double> durations;
   joints[0].position = start;
   for (std::size_t k = 1; k < joints.size(); ++k) {
-    joints[k].position = joints[k - 1].position + Vec3(random.uniform(-1.5, 1.5),
-                                                       random.uniform(0.5, 2.0),
-                                                       random.uniform(-0.5, 0.5));
+    joints[k].position =
+        joints[k - 1].position +
+        Vec3(random.uniform(-1.5, 1.5), random.uniform(0.5, 2.0), random.uniform(-0.5, 0.5));
     durations.push_back((joints[k].position - joints[k - 1].position).norm());
   }
   for (std::size_t k = 1; k + 1 < joints.size(); ++k) {
-    joints[k].velocity = (joints[k + 1].position - joints[k - 1].position) /
-                         (durations[k - 1] + durations[k]);
+    joints[k].velocity =
+        (joints[k + 1].position - joints[k - 1].position) / (durations[k - 1] + durations[k]);
     joints[k].acceleration = Vec3(random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), 0.0);
   }
   const auto build = [&](double scale) {  // time runs `scale` times slower
@@ -55,8 +55,8 @@ CommittedTrajectory random_trajectory(Random& random, const Vec3& start, int pie
   const auto peaks = build(1.0).peaks();
   CommittedTrajectory c;
   c.id = random.next();
-  c.trajectory = build(std::max(peaks.speed_m_s / v_max_m_s,
-                                std::sqrt(peaks.acceleration_m_s2 / a_max_m_s2)));
+  c.trajectory =
+      build(std::max(peaks.speed_m_s / v_max_m_s, std::sqrt(peaks.acceleration_m_s2 / a_max_m_s2)));
   certify_as_is(c);
   return c;
 }

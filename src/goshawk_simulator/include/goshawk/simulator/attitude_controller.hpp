@@ -8,7 +8,7 @@ namespace goshawk::simulator {
 /// Gains of the onboard attitude loop. They multiply the inertia, so that they mean the same for
 /// every vehicle: angular acceleration for an error in angle and in rate.
 struct AttitudeGains {
-  double tilt_1_s2 = 250.0;       // roll and pitch
+  double tilt_1_s2 = 250.0;  // roll and pitch
   double tilt_rate_1_s = 25.0;
   double yaw_1_s2 = 30.0;
   double yaw_rate_1_s = 9.0;

@@ -6,7 +6,7 @@ namespace goshawk::simulator {
 
 /// What the four rotors do together to the body. Frame `base_link`.
 struct Wrench {
-  double thrust_n = 0.0;                // along z
+  double thrust_n = 0.0;  // along z
   Vec3 torque_base_nm = Vec3::Zero();
 };
 
@@ -28,8 +28,8 @@ class Mixer {
 
  private:
   double max_n_;
-  double lever_m_;            // distance of each rotor's axis from the body's x and y axes
-  double yaw_per_thrust_m_;   // reaction torque for a newton of thrust
+  double lever_m_;           // distance of each rotor's axis from the body's x and y axes
+  double yaw_per_thrust_m_;  // reaction torque for a newton of thrust
 };
 
 }  // namespace goshawk::simulator

@@ -16,14 +16,14 @@ struct VehicleParameters {
   double inertia_xy_kg_m2 = 0.0;
   double inertia_xz_kg_m2 = 0.0;
   double inertia_yz_kg_m2 = 0.0;
-  double arm_length_m = 0.17;                // centre of mass to each rotor's axis
-  double max_motor_thrust_n = 7.0;           // of one motor
-  double thrust_coefficient_n_s2 = 8.5e-6;   // thrust = coefficient * (rotor speed)^2
-  double torque_coefficient_nm_s2 = 1.36e-7; // reaction torque = coefficient * (rotor speed)^2
-  double motor_time_constant_s = 0.03;       // rotor speed follows its command as a first-order lag
-  double linear_drag_xy_kg_s = 0.25;         // rotor drag, along body x and y
-  double linear_drag_z_kg_s = 0.15;          // rotor drag, along body z
-  double quadratic_drag_kg_m = 0.02;         // body drag, F = -c |v| v
+  double arm_length_m = 0.17;                 // centre of mass to each rotor's axis
+  double max_motor_thrust_n = 7.0;            // of one motor
+  double thrust_coefficient_n_s2 = 8.5e-6;    // thrust = coefficient * (rotor speed)^2
+  double torque_coefficient_nm_s2 = 1.36e-7;  // reaction torque = coefficient * (rotor speed)^2
+  double motor_time_constant_s = 0.03;  // rotor speed follows its command as a first-order lag
+  double linear_drag_xy_kg_s = 0.25;    // rotor drag, along body x and y
+  double linear_drag_z_kg_s = 0.15;     // rotor drag, along body z
+  double quadratic_drag_kg_m = 0.02;    // body drag, F = -c |v| v
 
   Eigen::Matrix3d inertia_kg_m2() const;
   double weight_n() const { return mass_kg * kGravity_m_s2; }

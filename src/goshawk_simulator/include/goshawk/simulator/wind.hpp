@@ -28,8 +28,8 @@ class Wind {
   Vec3 mean_map_;
   Vec3 gust_map_ = Vec3::Zero();
   double deviation_m_s_;
-  double decay_;   // of a gust over one step
-  double renewal_; // keeps the deviation stationary
+  double decay_;    // of a gust over one step
+  double renewal_;  // keeps the deviation stationary
   Random random_;
 };
 

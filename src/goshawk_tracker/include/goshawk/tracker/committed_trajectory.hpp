@@ -14,10 +14,10 @@ struct CommittedTrajectory {
   Trajectory trajectory;
   std::vector<Polytope> polytopes;  // each piece names the one it stays in
   Limits limits;
-  FlatState start;                  // what it was asked to begin with
-  FlatState goal;                   // and to end with
-  std::int64_t start_time_ns = 0;   // [ns] on the tracker's clock; may be past
-  double yaw_rad = 0.0;             // heading for the flight
+  FlatState start;                 // what it was asked to begin with
+  FlatState goal;                  // and to end with
+  std::int64_t start_time_ns = 0;  // [ns] on the tracker's clock; may be past
+  double yaw_rad = 0.0;            // heading for the flight
 };
 
 }  // namespace goshawk::tracker

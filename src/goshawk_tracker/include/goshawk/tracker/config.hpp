@@ -41,7 +41,7 @@ struct Config {
 };
 
 template <typename Self, typename Visitor>
-  requires std::same_as<std::remove_const_t<Self>, Config>
+requires std::same_as<std::remove_const_t<Self>, Config>
 void describe(Self& c, Visitor&& visit) {
   visit("controller", c.controller, "",
         "pd: thesis, PD with feedforward; geometric: on SE(3), after Lee, Leok, McClamroch 2010",
@@ -54,12 +54,10 @@ void describe(Self& c, Visitor&& visit) {
   visit("max_thrust_n", c.max_thrust_n, "N",
         "most collective thrust that is asked for; leave the motors some for attitude control",
         Range::positive(1e5));
-  visit("max_tilt_rad", c.max_tilt_rad, "rad", "steepest tilt that is asked for",
-        Range{0.05, 1.2});
+  visit("max_tilt_rad", c.max_tilt_rad, "rad", "steepest tilt that is asked for", Range{0.05, 1.2});
   visit("linear_drag_xy_kg_s", c.linear_drag_xy_kg_s, "kg/s",
         "known horizontal drag for the speed, compensated beforehand", Range{0.0, 100.0});
-  visit("linear_drag_z_kg_s", c.linear_drag_z_kg_s, "kg/s", "likewise vertical",
-        Range{0.0, 100.0});
+  visit("linear_drag_z_kg_s", c.linear_drag_z_kg_s, "kg/s", "likewise vertical", Range{0.0, 100.0});
   visit("actuation_delay_s", c.actuation_delay_s, "s",
         "feedforward is taken this far ahead: lag of motors and attitude loop, and transport",
         Range{0.0, 0.3});
@@ -67,8 +65,8 @@ void describe(Self& c, Visitor&& visit) {
         "acceleration for a horizontal position error", Range::positive(100.0));
   visit("position_z_1_s2", c.position_z_1_s2, "1/s^2", "acceleration for a height error",
         Range::positive(100.0));
-  visit("velocity_xy_1_s", c.velocity_xy_1_s, "1/s",
-        "acceleration for a horizontal velocity error", Range::positive(50.0));
+  visit("velocity_xy_1_s", c.velocity_xy_1_s, "1/s", "acceleration for a horizontal velocity error",
+        Range::positive(50.0));
   visit("velocity_z_1_s", c.velocity_z_1_s, "1/s", "acceleration for a climb rate error",
         Range::positive(50.0));
   visit("max_feedback_m_s2", c.max_feedback_m_s2, "m/s^2",

@@ -44,12 +44,12 @@ class PositionController {
   double mass_kg_;
   double min_force_m_s2_;  // thrust bounds over the mass
   double max_force_m_s2_;
-  double max_slope_;       // tangent of the steepest tilt
+  double max_slope_;  // tangent of the steepest tilt
   double max_feedback_m_s2_;
   double max_body_rate_rad_s_;
   Vec3 position_gain_1_s2_;
   Vec3 velocity_gain_1_s_;
-  Vec3 drag_1_s_;          // over the mass
+  Vec3 drag_1_s_;  // over the mass
   DisturbanceObserver observer_;
   double last_force_m_s2_ = kGravity_m_s2;
 };

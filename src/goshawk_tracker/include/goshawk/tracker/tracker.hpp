@@ -22,10 +22,10 @@ struct TrackingStatus {
   std::uint64_t trajectory_id = 0;  // the one followed or come to rest on; 0: none yet
   double progress_s = 0.0;          // along it
   double duration_s = 0.0;
-  int queued = 0;                   // trajectories accepted whose time has not come
-  FlatState reference;              // where the vehicle should be
-  double error_m = 0.0;             // latest distance from there
-  double rms_error_m = 0.0;         // since the trajectory was switched to, rest after it included
+  int queued = 0;            // trajectories accepted whose time has not come
+  FlatState reference;       // where the vehicle should be
+  double error_m = 0.0;      // latest distance from there
+  double rms_error_m = 0.0;  // since the trajectory was switched to, rest after it included
   double max_error_m = 0.0;
   Vec3 disturbance_map = Vec3::Zero();  // [m/s^2] learnt
 };
