@@ -88,10 +88,10 @@ class TrackerComponent : public Component {
 
   void publish_state(std::int64_t stamp_ns) {
     const TrackingStatus status = tracker_.status();
-    if (status.fault.code != reported_ && status.fault.code != ErrorCode::ok) {
+    if (status.fault.code != ErrorCode::ok && status.fault.message != reported_) {
       reporter_.failed(status.trajectory_id, status.fault);
     }
-    reported_ = status.fault.code;
+    reported_ = status.fault.message;
     msg::TrackingState m;
     m.header(conversions::make_header(stamp_ns));
     m.mode(std::string(to_string(status.mode)));
@@ -118,7 +118,7 @@ class TrackerComponent : public Component {
   Publisher<msg::TrackingState> states_;
   msg::ThrustAttitude command_message_;
   std::optional<msg::CommittedTrajectory> waiting_;
-  ErrorCode reported_ = ErrorCode::ok;
+  std::string reported_;  // the newest fault's sentence
   std::int64_t complained_ns_ = 0;
 };
 
