@@ -26,7 +26,8 @@ Result<std::int64_t> insert_scan(octomap::OcTree& tree, std::span<const Vec3> po
   for (const Vec3& p : points_map) {
     const Vec3 ray = p - sensor_origin_map;
     const double length_m = ray.norm();
-    if (!std::isfinite(length_m)) {
+    // Many drivers write a missing return as the sensor's own place: it would block that voxel.
+    if (!std::isfinite(length_m) || length_m == 0.0) {
       ++left_out;
       continue;
     }

@@ -127,6 +127,16 @@ TEST(LiveMap, BadScansChangeNothingAndBadPointsAreCounted) {
   EXPECT_TRUE(map.insert_scan({}, Vec3::Ones(), 5.0));
 }
 
+TEST(LiveMap, MissingReturnsDoNotBlockTheSensor) {
+  LiveMap map = LiveMap::unknown_space({Vec3::Zero(), Vec3(4, 4, 2)}, 0.1, {}).value();
+  const Vec3 from(0.55, 0.55, 0.55);
+  const std::vector<Vec3> points{from, Vec3(3.05, 0.55, 0.55), from};
+  EXPECT_EQ(map.insert_scan(points, from, 5.0).value().points_left_out, 2);
+  const Index3 voxel = *map.grid().geometry.index_of(from);
+  EXPECT_TRUE(map.raw().known.get(voxel));
+  EXPECT_FALSE(map.raw().occupied.get(voxel));
+}
+
 TEST(LiveMap, StartsFromALoadedMap) {
   const testing::Folder folder;
   MapSource source = load_map(folder.write("m.3dmap", "voxel 30 30 30\n15 15 15\n")).value();

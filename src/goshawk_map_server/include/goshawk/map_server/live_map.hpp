@@ -29,7 +29,7 @@ class LiveMap {
 
   struct ScanResult {
     GridUpdate update;             // brings grid() of before to grid() of now; may be empty
-    std::int64_t points_left_out = 0;  // not finite
+    std::int64_t points_left_out = 0;  // not finite, or at the sensor itself: missing returns
   };
 
   /// Inserts a scan and grows anew around what changed. The version rises by one, also where no

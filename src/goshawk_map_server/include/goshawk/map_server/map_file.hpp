@@ -16,7 +16,8 @@ namespace goshawk::map_server {
 enum class CloudMeaning {
   map,     // a finished map: points are occupied, the rest of the box is free
   points,  // points are occupied, nothing is known of the rest
-  scan,    // one scan: the rays from the sensor to the points are free, the rest unknown
+  scan,    // one scan: the rays from the sensor to the points are free, the rest unknown; points
+           // at the sensor itself are missing returns
 };
 
 /// How to read files that do not say it themselves. OctoMap files bring their resolution and their
