@@ -165,9 +165,11 @@ class Flight {
   FlightOutcome fly() {
     FlightOutcome outcome;
     if (auto ready = wait_until_ready(); !ready) {
-      outcome.legs.push_back({.goal_map = p_.tour.goals_map.front(),
-                              .code = std::string(to_string(ready.code())),
-                              .message = ready.error().message});
+      LegOutcome leg;
+      leg.goal_map = p_.tour.goals_map.front();
+      leg.code = to_string(ready.code());
+      leg.message = ready.error().message;
+      outcome.legs.push_back(leg);
     } else {
       for (const Vec3& goal : p_.tour.goals_map) {
         outcome.legs.push_back(fly_leg(goal, outcome.legs.size() + 1));
@@ -227,7 +229,8 @@ class Flight {
   }
 
   LegOutcome fly_leg(const Vec3& goal, std::size_t number) {
-    LegOutcome leg{.goal_map = goal};
+    LegOutcome leg;
+    leg.goal_map = goal;
     const std::int64_t begin_ns = record_.now_ns();
     std::int64_t said_ns = begin_ns;
     Status lives = success();

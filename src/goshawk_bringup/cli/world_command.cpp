@@ -55,7 +55,9 @@ Result<Made> make(const Options& o) {
     if (!world) return world.error();
     return Made{world->geometry, std::move(world->occupied), {}, o.spec.kind};
   }
-  auto source = map_server::load_map(o.convert, {.resolution_m = o.spec.resolution_m});
+  map_server::LoadOptions options;
+  options.resolution_m = o.spec.resolution_m;
+  auto source = map_server::load_map(o.convert, options);
   if (!source) return source.error();
   auto raw = map_server::voxelize(*source->tree);
   if (!raw) return raw.error();
