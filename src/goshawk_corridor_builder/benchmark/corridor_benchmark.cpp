@@ -26,8 +26,8 @@ struct Scene {
 enum World { kBoxes, kForest };
 
 VoxelGrid make_world(World world, std::uint64_t seed) {
-  return world == kBoxes ? support::boxes_and_pillars({30, 40, 20}, 0.2, 0.4, 0.2, seed)
-                         : support::forest({150, 150, 25}, 0.2, 60, 0.2, seed);
+  return world == kBoxes ? test_support::boxes_and_pillars({30, 40, 20}, 0.2, 0.4, 0.2, seed)
+                         : test_support::forest({150, 150, 25}, 0.2, 60, 0.2, seed);
 }
 
 const std::vector<Scene>& scenes(World world) {
@@ -36,7 +36,7 @@ const std::vector<Scene>& scenes(World world) {
   for (std::uint64_t seed = 1; list.size() < 6; ++seed) {
     Scene scene{make_world(world, seed), {}};
     for (std::uint64_t k = 0; k < 12; ++k) {
-      const auto path = support::random_pruned_path(scene.grid, 100 * seed + k);
+      const auto path = test_support::random_pruned_path(scene.grid, 100 * seed + k);
       for (std::size_t i = 0; i + 1 < path.size(); ++i) {
         scene.segments.push_back({path[i], path[i + 1]});
       }
@@ -60,11 +60,11 @@ struct Quality {
 
   void add(const Polytope& polytope, const Scene& scene, const std::vector<Vec3>& segment) {
     const Ball ball = chebyshev_ball(polytope);
-    volume_m3.push_back(support::volume_of(polytope));
+    volume_m3.push_back(test_support::volume_of(polytope));
     faces.push_back(polytope.faces());
     radius_m.push_back(ball.radius_m);
     const Corridor alone{segment, {polytope}, {}};
-    cutting += !support::faults_of(alone, scene.grid, segment).empty();
+    cutting += !test_support::faults_of(alone, scene.grid, segment).empty();
     ++segments;
   }
 
@@ -118,8 +118,8 @@ void voxel_centres(benchmark::State& state, World world) {
 // The same room in maps of 10 m to 1 km: the cost must not grow.
 void map_size(benchmark::State& state) {
   const int n = int(state.range(0)) * 5;
-  VoxelGrid grid = support::empty_world({n, n, 20}, 0.2);
-  const VoxelGrid room = support::boxes_and_pillars({40, 40, 20}, 0.2, 0.3, 0.2, 1);
+  VoxelGrid grid = test_support::empty_world({n, n, 20}, 0.2);
+  const VoxelGrid room = test_support::boxes_and_pillars({40, 40, 20}, 0.2, 0.3, 0.2, 1);
   for (int z = 0; z < 20; ++z) {
     for (int y = 0; y < 40; ++y) {
       for (int x = 0; x < 40; ++x) grid.occupied.set({x, y, z}, room.occupied.get({x, y, z}));
@@ -127,7 +127,7 @@ void map_size(benchmark::State& state) {
   }
   std::vector<Vec3> path;
   for (std::uint64_t seed = 1; path.size() < 4; ++seed) {
-    path = support::random_pruned_path(room, seed);
+    path = test_support::random_pruned_path(room, seed);
   }
   auto builder = std::move(CorridorBuilder::create({})).value();
   for (auto _ : state) benchmark::DoNotOptimize(builder.build(grid, path));

@@ -8,6 +8,7 @@
 
 #include "box_growth.hpp"
 #include "chain.hpp"
+#include "joint_relaxation.hpp"
 #include "joints.hpp"
 #include "segment_polytope.hpp"
 
@@ -75,6 +76,7 @@ class CorridorBuilder::Impl {
 
   SegmentPolytope segment_polytope_;
   BoxGrowth box_growth_;
+  JointRelaxation relaxation_;
   Margins margins_;
   std::vector<PathPoint> points_;
   Chain chain_;
@@ -97,6 +99,10 @@ Result<Corridor> CorridorBuilder::Impl::build(const VoxelGrid& grid, std::span<c
                             : wrap(grid);
   if (blockage) return blocked(grid, path, *blockage);
   measure_overlaps(chain_.polytopes, overlaps_);
+  for (int k = 0; k < config.relax_passes && config.generator != "box"; ++k) {
+    relaxation_.relax(grid, config.wanted_overlap_voxels * grid.geometry.resolution_m, margins_,
+                      segment_polytope_, chain_, overlaps_);
+  }
   if (config.drop_covered) drop_covered(grid.geometry.resolution_m, chain_, overlaps_);
   if (auto status = check_room(path); !status) return status.error();
   settle_joints(config.joint_clearance_voxels * grid.geometry.resolution_m, overlaps_, chain_);

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-namespace goshawk::corridor_builder::support {
+namespace goshawk::corridor_builder::test_support {
 namespace {
 
 constexpr double kRounding_m = 1e-9;
@@ -160,4 +160,4 @@ std::string faults_of(const Corridor& corridor, const VoxelGrid& grid,
   return faults;
 }
 
-}  // namespace goshawk::corridor_builder::support
+}  // namespace goshawk::corridor_builder::test_support

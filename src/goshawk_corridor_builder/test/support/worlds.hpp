@@ -9,7 +9,7 @@
 #include "goshawk/core/line_of_sight.hpp"
 #include "goshawk/core/random.hpp"
 
-namespace goshawk::corridor_builder::support {
+namespace goshawk::corridor_builder::test_support {
 
 inline VoxelGrid empty_world(Index3 size, double resolution_m, Vec3 origin_map = Vec3::Zero()) {
   VoxelGrid grid;
@@ -116,4 +116,4 @@ inline std::vector<Vec3> random_free_path(const VoxelGrid& grid, int segments, d
   return path;
 }
 
-}  // namespace goshawk::corridor_builder::support
+}  // namespace goshawk::corridor_builder::test_support
