@@ -50,10 +50,10 @@ void JointRelaxation::exchange(std::size_t begin, std::size_t end, Chain& chain,
     for (std::size_t k = first; k < last; ++k) radius_m = std::min(radius_m, balls[k].radius_m);
     return radius_m;
   };
-  std::vector<Ball> balls = overlaps;
-  for (std::size_t k = first; k < last; ++k) balls[k] = chebyshev_ball(now(k), now(k + 1));
-  if (!(least(balls) > least(overlaps))) return;
-  overlaps = std::move(balls);
+  balls_ = overlaps;
+  for (std::size_t k = first; k < last; ++k) balls_[k] = chebyshev_ball(now(k), now(k + 1));
+  if (!(least(balls_) > least(overlaps))) return;
+  std::swap(overlaps, balls_);
   for (std::size_t k = begin; k < end; ++k) std::swap(chain.polytopes[k], rebuilt_[k]);
   for (std::size_t k = begin; k <= end; ++k) chain.joints_map[k] = joints_map_[k];
 }

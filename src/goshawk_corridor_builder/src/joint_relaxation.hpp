@@ -28,6 +28,7 @@ class JointRelaxation {
   std::vector<Vec3> joints_map_;  // moved
   std::vector<unsigned char> narrow_;
   std::vector<Polytope> rebuilt_;
+  std::vector<Ball> balls_;
 };
 
 }  // namespace goshawk::corridor_builder

@@ -50,11 +50,12 @@ VoxelGrid random_world(int kind, Random& random) {
   VoxelGrid grid = test_support::empty_world(size, resolution_m, origin);
   if (kind == 0) test_support::add_noise(grid, random.uniform(0.0, 0.3), random);
   if (kind == 1) {
-    grid = test_support::boxes_and_pillars(size, resolution_m, random.uniform(0.1, 0.5), resolution_m,
-                                      random.next());
+    grid = test_support::boxes_and_pillars(size, resolution_m, random.uniform(0.1, 0.5),
+                                           resolution_m, random.next());
   }
   if (kind == 2) {
-    grid = test_support::forest(size, resolution_m, 1 + random.below(12), resolution_m, random.next());
+    grid =
+        test_support::forest(size, resolution_m, 1 + random.below(12), resolution_m, random.next());
   }
   grid.geometry.origin_map = origin;
   return grid;
@@ -108,7 +109,6 @@ TEST(CorridorBuilder, BoxesNeverCutIntoAnObstacle) {
   EXPECT_EQ(tally.disjoint, 0);
 }
 
-
 constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
@@ -131,7 +131,9 @@ class BothGenerators : public ::testing::TestWithParam<const char*> {
 
 INSTANTIATE_TEST_SUITE_P(Corridor, BothGenerators, ::testing::Values("ellipsoid", "box"));
 
-TEST_P(BothGenerators, SaysItsName) { EXPECT_EQ(builder_.implementation(), GetParam()); }
+TEST_P(BothGenerators, SaysItsName) {
+  EXPECT_EQ(builder_.implementation(), GetParam());
+}
 
 TEST_P(BothGenerators, RefusesAPathThatIsNoPath) {
   const VoxelGrid grid = world_with_wall();
@@ -157,8 +159,28 @@ TEST_P(BothGenerators, NamesTheSegmentThatIsBlockedOrLeavesTheMap) {
                ErrorCode::segment_blocked, "segment 0");
   expect_error(builder_.build(grid, std::vector{a, b, Vec3(0.5, 0.5, 2.5)}),
                ErrorCode::segment_blocked, "segment 1");
-  expect_error(builder_.build(grid, std::vector{Vec3(1e300, 0, 0), a}),
-               ErrorCode::segment_blocked, "leaves the map");
+  expect_error(builder_.build(grid, std::vector{Vec3(1e300, 0, 0), a}), ErrorCode::segment_blocked,
+               "leaves the map");
+}
+
+TEST_P(BothGenerators, StaysExactFarFromTheOriginAndRefusesAMapThatIsTooFar) {
+  VoxelGrid grid = world_with_wall();
+  const std::vector<Vec3> near{{2.0, 1.0, 0.5}, {0.5, 1.0, 0.5}, {1.5, 1.5, 1.9}};
+  for (const double away_m : {1e3, 1e5, 1e12}) {
+    grid.geometry.origin_map = Vec3(away_m, -away_m, 0.0);
+    std::vector<Vec3> path;
+    for (const Vec3& p : near) path.push_back(p + grid.geometry.origin_map);
+    const auto corridor = builder_.build(grid, path);
+    if (away_m > 1e6) {
+      expect_error(corridor, ErrorCode::invalid_input, "too far");
+      continue;
+    }
+    ASSERT_TRUE(corridor.ok()) << corridor.error().message;
+    for (const Polytope& polytope : corridor->polytopes) {
+      const Vec3 in_wall = grid.geometry.origin_map + Vec3(2.0 + 1e-6, 1.0, 0.5);
+      EXPECT_GT(polytope.violation(in_wall), 0.0);
+    }
+  }
 }
 
 TEST_P(BothGenerators, WrapsAPathOfNoLength) {
@@ -176,12 +198,12 @@ TEST_P(BothGenerators, WrapsAPathOfNoLength) {
 TEST_P(BothGenerators, StartAndGoalMayLieOnFacesEdgesAndCornersOfObstaclesAndOfTheMap) {
   const VoxelGrid grid = world_with_wall();
   const std::vector<std::vector<Vec3>> paths{
-      {{2.0, 1.0, 0.5}, {0.5, 1.0, 0.5}},              // begins on the wall's face
-      {{0.5, 1.0, 0.5}, {2.0, 1.0, 0.5}},              // ends there
-      {{2.0, 1.0, 1.0}, {0.5, 1.0, 0.5}},              // begins on its upper edge
-      {{1.0, 0.0, 0.5}, {1.0, 2.0, 0.5}},              // from map face to map face
-      {{0.0, 0.0, 0.0}, {4.0, 2.0, 2.0}},              // from corner to corner, over the wall's edge
-      {{0.0, 0.0, 2.0}, {4.0, 0.0, 2.0}},              // along an edge of the map
+      {{2.0, 1.0, 0.5}, {0.5, 1.0, 0.5}},  // begins on the wall's face
+      {{0.5, 1.0, 0.5}, {2.0, 1.0, 0.5}},  // ends there
+      {{2.0, 1.0, 1.0}, {0.5, 1.0, 0.5}},  // begins on its upper edge
+      {{1.0, 0.0, 0.5}, {1.0, 2.0, 0.5}},  // from map face to map face
+      {{0.0, 0.0, 0.0}, {4.0, 2.0, 2.0}},  // from corner to corner, over the wall's edge
+      {{0.0, 0.0, 2.0}, {4.0, 0.0, 2.0}},  // along an edge of the map
       {{0.1, 1.0, 0.5}, {2.0, 1.0, 1.5}, {3.9, 1.0, 0.5}},
   };
   for (const auto& path : paths) {

@@ -196,7 +196,8 @@ TEST(InscribedEllipsoid, StaysInsideAndFillsABox) {
     ASSERT_TRUE(grow_inscribed_ellipsoid(planes, seed, grown));
     const Mat3 shape = grown.metric.inverse();
     for (const Plane& plane : planes) {
-      EXPECT_GE(plane.slack(grown.center), std::sqrt(plane.normal.dot(shape * plane.normal)) - 1e-9);
+      EXPECT_GE(plane.slack(grown.center),
+                std::sqrt(plane.normal.dot(shape * plane.normal)) - 1e-9);
     }
     const double volume = std::sqrt(shape.determinant());
     if (k % 20 == 0) {

@@ -22,11 +22,12 @@ struct Config {
 };
 
 template <typename Self, typename Visitor>
-  requires std::same_as<std::remove_const_t<Self>, Config>
+requires std::same_as<std::remove_const_t<Self>, Config>
 void describe(Self& config, Visitor&& visit) {
-  visit("generator", config.generator, "",
-        "ellipsoid: inflation of an ellipsoid, largest polytopes; box: axis-aligned boxes, cheapest",
-        OneOf{{"ellipsoid", "box"}});
+  visit(
+      "generator", config.generator, "",
+      "ellipsoid: inflation of an ellipsoid, largest polytopes; box: axis-aligned boxes, cheapest",
+      OneOf{{"ellipsoid", "box"}});
   visit("local_box_m", config.local_box_m, "m",
         "how far a polytope may reach beyond the axis-aligned box of its segment",
         Range{0.0, 100.0, true});
