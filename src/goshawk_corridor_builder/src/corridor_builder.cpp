@@ -143,7 +143,10 @@ Status CorridorBuilder::Impl::check_path(const VoxelGrid& grid, std::span<const 
 // Obstacles that touch each other leave a path between them, but no room to fly.
 Status CorridorBuilder::Impl::check_room(std::span<const Vec3> path) const {
   const char* squeezes = ": the path squeezes between obstacles that touch; search it without";
-  if (overlaps_.empty() && !(chebyshev_ball(chain_.polytopes[0]).radius_m > kLeastOverlap_m)) {
+  const Polytope& first = chain_.polytopes.front();
+  const Vec3 middle = 0.5 * (chain_.joints_map[0] + chain_.joints_map[1]);
+  if (overlaps_.empty() && first.violation(middle) > -kLeastOverlap_m &&
+      !(chebyshev_ball(first).radius_m > kLeastOverlap_m)) {
     return fail(ErrorCode::segment_blocked, segment_text(path, 0) + " has no room" + squeezes);
   }
   for (std::size_t k = 0; k < overlaps_.size(); ++k) {
