@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <chrono>
 #include <map>
+#include <string>
 
 #include "ellipsoid_decomposition.hpp"
 #include "goshawk/corridor_builder/corridor_builder.hpp"
@@ -26,8 +27,8 @@ struct Scene {
 enum World { kBoxes, kForest };
 
 VoxelGrid make_world(World world, std::uint64_t seed) {
-  return world == kBoxes ? support::boxes_and_pillars({30, 40, 20}, 0.2, 0.4, 0.2, seed)
-                         : support::forest({150, 150, 25}, 0.2, 60, 0.2, seed);
+  return world == kBoxes ? test_support::boxes_and_pillars({30, 40, 20}, 0.2, 0.4, 0.2, seed)
+                         : test_support::forest({150, 150, 25}, 0.2, 60, 0.2, seed);
 }
 
 const std::vector<Scene>& scenes(World world) {
@@ -36,7 +37,7 @@ const std::vector<Scene>& scenes(World world) {
   for (std::uint64_t seed = 1; list.size() < 6; ++seed) {
     Scene scene{make_world(world, seed), {}};
     for (std::uint64_t k = 0; k < 12; ++k) {
-      const auto path = support::random_pruned_path(scene.grid, 100 * seed + k);
+      const auto path = test_support::random_pruned_path(scene.grid, 100 * seed + k);
       for (std::size_t i = 0; i + 1 < path.size(); ++i) {
         scene.segments.push_back({path[i], path[i + 1]});
       }
@@ -56,15 +57,19 @@ double quantile(std::vector<double> values, double q) {
 struct Quality {
   std::vector<double> volume_m3, faces, radius_m;
   int segments = 0;
-  int cutting = 0;
+  int cutting = 0;  // corridors with a polytope that cuts into an obstacle
+  int lost = 0;     // corridors that do not hold their segment
 
-  void add(const Polytope& polytope, const Scene& scene, const std::vector<Vec3>& segment) {
-    const Ball ball = chebyshev_ball(polytope);
-    volume_m3.push_back(support::volume_of(polytope));
-    faces.push_back(polytope.faces());
-    radius_m.push_back(ball.radius_m);
-    const Corridor alone{segment, {polytope}, {}};
-    cutting += !support::faults_of(alone, scene.grid, segment).empty();
+  void add(const Corridor& corridor, const Scene& scene, const std::vector<Vec3>& segment) {
+    for (const Polytope& polytope : corridor.polytopes) {
+      volume_m3.push_back(test_support::volume_of(polytope));
+      faces.push_back(polytope.faces());
+      radius_m.push_back(chebyshev_ball(polytope).radius_m);
+    }
+    const std::string faults = test_support::faults_of(corridor, scene.grid, segment);
+    cutting += faults.find("cuts into") != std::string::npos;
+    lost += corridor.polytopes.front().violation(segment[0]) > 1e-9 ||
+            corridor.polytopes.back().violation(segment[1]) > 1e-9;
     ++segments;
   }
 
@@ -76,10 +81,11 @@ struct Quality {
     state.counters["faces"] = quantile(faces, 0.5);
     state.counters["radius_m"] = quantile(radius_m, 0.5);
     state.counters["cutting"] = cutting;
+    state.counters["lost"] = lost;
   }
 };
 
-template <typename Build>  // Polytope Build(const VoxelGrid&, segment)
+template <typename Build>  // Corridor Build(const VoxelGrid&, segment)
 void run(benchmark::State& state, World world, const Build& build) {
   scenes(world);  // made once, outside the timing
   std::vector<double> us;
@@ -105,21 +111,24 @@ void run(benchmark::State& state, World world, const Build& build) {
 void ours(benchmark::State& state, World world, const Config& config) {
   auto builder = std::move(CorridorBuilder::create(config)).value();
   run(state, world, [&](const VoxelGrid& grid, const std::vector<Vec3>& segment) {
-    return std::move(builder.build(grid, segment).value().polytopes[0]);
+    return std::move(builder.build(grid, segment)).value();
   });
 }
 
-void voxel_centres(benchmark::State& state, World world) {
-  run(state, world, [](const VoxelGrid& grid, const std::vector<Vec3>& segment) {
-    return baseline::decompose(grid, segment[0], segment[1], Config{}.local_box_m);
+void voxel_centres(benchmark::State& state, World world, baseline::Planes planes) {
+  run(state, world, [&](const VoxelGrid& grid, const std::vector<Vec3>& segment) {
+    return Corridor{
+        segment,
+        {baseline::decompose(grid, segment[0], segment[1], Config{}.local_box_m, planes)},
+        {}};
   });
 }
 
 // The same room in maps of 10 m to 1 km: the cost must not grow.
 void map_size(benchmark::State& state) {
   const int n = int(state.range(0)) * 5;
-  VoxelGrid grid = support::empty_world({n, n, 20}, 0.2);
-  const VoxelGrid room = support::boxes_and_pillars({40, 40, 20}, 0.2, 0.3, 0.2, 1);
+  VoxelGrid grid = test_support::empty_world({n, n, 20}, 0.2);
+  const VoxelGrid room = test_support::boxes_and_pillars({40, 40, 20}, 0.2, 0.3, 0.2, 1);
   for (int z = 0; z < 20; ++z) {
     for (int y = 0; y < 40; ++y) {
       for (int x = 0; x < 40; ++x) grid.occupied.set({x, y, z}, room.occupied.get({x, y, z}));
@@ -127,9 +136,9 @@ void map_size(benchmark::State& state) {
   }
   std::vector<Vec3> path;
   for (std::uint64_t seed = 1; path.size() < 4; ++seed) {
-    path = support::random_pruned_path(room, seed);
+    path = test_support::random_pruned_path(room, seed);
   }
-  auto builder = std::move(CorridorBuilder::create({})).value();
+  auto builder = std::move(CorridorBuilder::create(Config{})).value();
   for (auto _ : state) benchmark::DoNotOptimize(builder.build(grid, path));
 }
 
@@ -141,12 +150,18 @@ BENCHMARK_CAPTURE(ours, boxes_ellipsoid_no_growth, kBoxes,
     ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(ours, boxes_box, kBoxes, Config{.generator = "box"})
     ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(voxel_centres, boxes, kBoxes)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(voxel_centres, boxes, kBoxes, baseline::Planes::through_centres)
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(ours, forest_ellipsoid, kForest, kWhole)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(ours, forest_ellipsoid_no_growth, kForest,
                   Config{.max_segment_m = 1000.0, .growth_passes = 0})
     ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(voxel_centres, forest, kForest)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(voxel_centres, boxes_cleared, kBoxes, baseline::Planes::before_cubes)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(voxel_centres, forest, kForest, baseline::Planes::through_centres)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(voxel_centres, forest_cleared, kForest, baseline::Planes::before_cubes)
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK(map_size)->Arg(10)->Arg(100)->Arg(1000)->Unit(benchmark::kMicrosecond);
 
 }  // namespace

@@ -79,8 +79,8 @@ Frame fit(const Vec3& p, const Vec3& q, const std::vector<Vec3>& points) {
 
 }  // namespace
 
-Polytope decompose(const VoxelGrid& grid, const Vec3& p_map, const Vec3& q_map,
-                   double local_box_m) {
+Polytope decompose(const VoxelGrid& grid, const Vec3& p_map, const Vec3& q_map, double local_box_m,
+                   Planes planes) {
   LocalBox box{p_map.cwiseMin(q_map).array() - local_box_m,
                p_map.cwiseMax(q_map).array() + local_box_m};
   box.lower = box.lower.cwiseMax(grid.geometry.origin_map);
@@ -93,11 +93,11 @@ Polytope decompose(const VoxelGrid& grid, const Vec3& p_map, const Vec3& q_map,
         points.begin(), points.end(),
         [&](const Vec3& a, const Vec3& b) { return e.distance(a) < e.distance(b); });
     const Vec3 at = *nearest;
-    const Vec3 gradient =
-        e.axes * e.local(at).cwiseQuotient(e.semi).cwiseQuotient(e.semi);
+    const Vec3 gradient = e.axes * e.local(at).cwiseQuotient(e.semi).cwiseQuotient(e.semi);
     const Vec3 n = gradient.normalized();
     const double d = n.dot(at);
-    polytope.add(n, d);
+    const double half_cube_m = 0.5 * grid.geometry.resolution_m * n.lpNorm<1>();
+    polytope.add(n, planes == Planes::through_centres ? d : d - half_cube_m);
     std::erase_if(points, [&](const Vec3& x) { return n.dot(x) >= d - 1e-9; });
   }
   return polytope;

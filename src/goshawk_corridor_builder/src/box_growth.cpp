@@ -33,8 +33,12 @@ bool box_is_free(const BitGrid& occupied, const VoxelBox& box) {
   return true;
 }
 
-int& coordinate(Index3& i, int axis) { return axis == 0 ? i.x : axis == 1 ? i.y : i.z; }
-int coordinate(const Index3& i, int axis) { return axis == 0 ? i.x : axis == 1 ? i.y : i.z; }
+int& coordinate(Index3& i, int axis) {
+  return axis == 0 ? i.x : axis == 1 ? i.y : i.z;
+}
+int coordinate(const Index3& i, int axis) {
+  return axis == 0 ? i.x : axis == 1 ? i.y : i.z;
+}
 
 bool holds(const Index3& i, const Vec3& p) {
   for (int a = 0; a < 3; ++a) {
@@ -59,8 +63,7 @@ bool contains(const VoxelBox& box, const Index3& i) {
 }
 
 // One more layer on one side. @return false where it is not free or beyond the limits
-bool add_layer(const BitGrid& occupied, int axis, int side, const VoxelBox& limits,
-               VoxelBox& box) {
+bool add_layer(const BitGrid& occupied, int axis, int side, const VoxelBox& limits, VoxelBox& box) {
   VoxelBox layer = box;
   if (side < 0) {
     if (coordinate(box.lo, axis) <= coordinate(limits.lo, axis)) return false;
@@ -176,10 +179,10 @@ VoxelBox BoxGrowth::grow(const VoxelGrid& grid, std::size_t begin, std::size_t& 
   }
   const int reach = int(std::min(1e6, std::ceil(config_.local_box_m / grid.geometry.resolution_m)));
   const Index3 size = grid.occupied.size();
-  const VoxelBox limits{{std::max(0, box.lo.x - reach), std::max(0, box.lo.y - reach),
-                         std::max(0, box.lo.z - reach)},
-                        {std::min(size.x, box.hi.x + reach), std::min(size.y, box.hi.y + reach),
-                         std::min(size.z, box.hi.z + reach)}};
+  const VoxelBox limits{
+      {std::max(0, box.lo.x - reach), std::max(0, box.lo.y - reach), std::max(0, box.lo.z - reach)},
+      {std::min(size.x, box.hi.x + reach), std::min(size.y, box.hi.y + reach),
+       std::min(size.z, box.hi.z + reach)}};
   for (bool grew = true; grew;) {
     grew = false;
     for (int axis = 0; axis < 3; ++axis) {

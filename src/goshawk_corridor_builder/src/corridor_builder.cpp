@@ -8,6 +8,7 @@
 
 #include "box_growth.hpp"
 #include "chain.hpp"
+#include "joint_relaxation.hpp"
 #include "joints.hpp"
 #include "segment_polytope.hpp"
 
@@ -66,7 +67,8 @@ class CorridorBuilder::Impl {
   Config config;
 
  private:
-  Status check(const VoxelGrid& grid, std::span<const Vec3> path) const;
+  Status check_grid(const VoxelGrid& grid);
+  Status check_path(const VoxelGrid& grid, std::span<const Vec3> path) const;
   Status check_room(std::span<const Vec3> path) const;
   void split(const VoxelGrid& grid, std::span<const Vec3> path);
   std::optional<Blockage> wrap(const VoxelGrid& grid);
@@ -75,6 +77,7 @@ class CorridorBuilder::Impl {
 
   SegmentPolytope segment_polytope_;
   BoxGrowth box_growth_;
+  JointRelaxation relaxation_;
   Margins margins_;
   std::vector<PathPoint> points_;
   Chain chain_;
@@ -82,21 +85,17 @@ class CorridorBuilder::Impl {
 };
 
 Result<Corridor> CorridorBuilder::Impl::build(const VoxelGrid& grid, std::span<const Vec3> path) {
-  if (auto status = check(grid, path); !status) return status.error();
-  const Vec3 origin = grid.geometry.origin_map.cwiseAbs() / grid.geometry.resolution_m;
-  const Index3 size = grid.geometry.size;
-  margins_ = Margins::for_coordinates(origin.maxCoeff() + std::max({size.x, size.y, size.z}));
-  if (!(margins_.rounding < kMostRounding)) {
-    return fail(ErrorCode::invalid_input,
-                "the map's origin " + to_text(grid.geometry.origin_map) +
-                    " is too far away for exact planes: choose a map frame nearer to the map");
-  }
+  if (auto status = check_grid(grid); !status) return status.error();
+  if (auto status = check_path(grid, path); !status) return status.error();
   split(grid, path);
-  const auto blockage = config.generator == "box"
-                            ? box_growth_.build(grid, points_, margins_, chain_)
-                            : wrap(grid);
+  const auto blockage =
+      config.generator == "box" ? box_growth_.build(grid, points_, margins_, chain_) : wrap(grid);
   if (blockage) return blocked(grid, path, *blockage);
   measure_overlaps(chain_.polytopes, overlaps_);
+  for (int k = 0; k < config.relax_passes && config.generator != "box"; ++k) {
+    relaxation_.relax(grid, config.wanted_overlap_voxels * grid.geometry.resolution_m, margins_,
+                      segment_polytope_, chain_, overlaps_);
+  }
   if (config.drop_covered) drop_covered(grid.geometry.resolution_m, chain_, overlaps_);
   if (auto status = check_room(path); !status) return status.error();
   settle_joints(config.joint_clearance_voxels * grid.geometry.resolution_m, overlaps_, chain_);
@@ -104,8 +103,19 @@ Result<Corridor> CorridorBuilder::Impl::build(const VoxelGrid& grid, std::span<c
   return Corridor{std::move(chain_.joints_map), std::move(chain_.polytopes), std::move(overlaps_)};
 }
 
-Status CorridorBuilder::Impl::check(const VoxelGrid& grid, std::span<const Vec3> path) const {
+// Sets the margins for the map's coordinates as well.
+Status CorridorBuilder::Impl::check_grid(const VoxelGrid& grid) {
   if (auto status = grid.check(); !status) return status;
+  const Vec3 origin = grid.geometry.origin_map.cwiseAbs() / grid.geometry.resolution_m;
+  const Index3 size = grid.geometry.size;
+  margins_ = Margins::for_coordinates(origin.maxCoeff() + std::max({size.x, size.y, size.z}));
+  if (margins_.rounding < kMostRounding) return success();
+  return fail(ErrorCode::invalid_input,
+              "the map's origin " + to_text(grid.geometry.origin_map) +
+                  " is too far away for exact planes: choose a map frame nearer to the map");
+}
+
+Status CorridorBuilder::Impl::check_path(const VoxelGrid& grid, std::span<const Vec3> path) const {
   if (path.size() < 2) {
     return fail(ErrorCode::invalid_input, "the path has " + std::to_string(path.size()) +
                                               " points: a corridor needs a start and a goal");
@@ -118,11 +128,14 @@ Status CorridorBuilder::Impl::check(const VoxelGrid& grid, std::span<const Vec3>
   const Vec3 upper(grid.geometry.size.x, grid.geometry.size.y, grid.geometry.size.z);
   for (std::size_t i = 0; i < path.size(); ++i) {
     const Vec3 p = grid.geometry.to_grid(path[i]);
-    if ((p.array() >= -1e-9).all() && ((upper - p).array() >= -1e-9).all()) continue;
-    return fail(ErrorCode::segment_blocked,
-                segment_text(path, int(i == 0 ? 0 : i - 1)) + " leaves the map, which spans " +
-                    to_text(grid.geometry.origin_map) + " to " +
-                    to_text(grid.geometry.upper_corner_map()));
+    if ((p.array() >= -margins_.touch).all() &&
+        (p.array() <= upper.array() + margins_.touch).all()) {
+      continue;
+    }
+    return fail(ErrorCode::segment_blocked, segment_text(path, int(i == 0 ? 0 : i - 1)) +
+                                                " leaves the map, which spans " +
+                                                to_text(grid.geometry.origin_map) + " to " +
+                                                to_text(grid.geometry.upper_corner_map()));
   }
   return success();
 }
@@ -130,14 +143,17 @@ Status CorridorBuilder::Impl::check(const VoxelGrid& grid, std::span<const Vec3>
 // Obstacles that touch each other leave a path between them, but no room to fly.
 Status CorridorBuilder::Impl::check_room(std::span<const Vec3> path) const {
   const char* squeezes = ": the path squeezes between obstacles that touch; search it without";
-  if (overlaps_.empty() && !(chebyshev_ball(chain_.polytopes[0]).radius_m > kLeastOverlap_m)) {
+  const Polytope& first = chain_.polytopes.front();
+  const Vec3 middle = 0.5 * (chain_.joints_map[0] + chain_.joints_map[1]);
+  if (overlaps_.empty() && first.violation(middle) > -kLeastOverlap_m &&
+      !(chebyshev_ball(first).radius_m > kLeastOverlap_m)) {
     return fail(ErrorCode::segment_blocked, segment_text(path, 0) + " has no room" + squeezes);
   }
   for (std::size_t k = 0; k < overlaps_.size(); ++k) {
     if (overlaps_[k].radius_m > kLeastOverlap_m) continue;
-    return fail(ErrorCode::corridor_disjoint,
-                "polytopes " + std::to_string(k) + " and " + std::to_string(k + 1) +
-                    " share no ball near " + to_text(chain_.joints_map[k + 1]) + squeezes);
+    return fail(ErrorCode::corridor_disjoint, "polytopes " + std::to_string(k) + " and " +
+                                                  std::to_string(k + 1) + " share no ball near " +
+                                                  to_text(chain_.joints_map[k + 1]) + squeezes);
   }
   return success();
 }
@@ -170,12 +186,11 @@ std::optional<Blockage> CorridorBuilder::Impl::wrap(const VoxelGrid& grid) {
   chain_.joints_map.push_back(points_.front().p_map);
   for (std::size_t i = 0; i + 1 < points_.size();) {
     Polytope polytope;
-    const auto at = segment_polytope_.build(grid, points_[i].p_grid, points_[i + 1].p_grid,
-                                            margins_, polytope);
+    const auto at =
+        segment_polytope_.build(grid, points_[i].p_grid, points_[i + 1].p_grid, margins_, polytope);
     if (at) return Blockage{points_[i].segment, *at};
-    i = config.drop_covered
-            ? covered_until(polytope, i + 1, kSpare * grid.geometry.resolution_m)
-            : i + 1;
+    i = config.drop_covered ? covered_until(polytope, i + 1, kSpare * grid.geometry.resolution_m)
+                            : i + 1;
     chain_.joints_map.push_back(points_[i].p_map);
     chain_.polytopes.push_back(std::move(polytope));
   }
@@ -190,8 +205,7 @@ std::size_t CorridorBuilder::Impl::covered_until(const Polytope& polytope, std::
 
 Error CorridorBuilder::Impl::blocked(const VoxelGrid& grid, std::span<const Vec3> path,
                                      const Blockage& at) const {
-  const Vec3 place =
-      grid.geometry.origin_map + grid.geometry.resolution_m * at.p_grid;
+  const Vec3 place = grid.geometry.origin_map + grid.geometry.resolution_m * at.p_grid;
   return fail(ErrorCode::segment_blocked,
               segment_text(path, at.segment) + " is blocked near " + to_text(place) +
                   ": an obstacle (grown by " + number_text(grid.inflation_m) +
@@ -215,6 +229,8 @@ Result<Corridor> CorridorBuilder::build(const VoxelGrid& grid,
   return impl_->build(grid, waypoints_map);
 }
 
-std::string_view CorridorBuilder::implementation() const { return impl_->config.generator; }
+std::string_view CorridorBuilder::implementation() const {
+  return impl_->config.generator;
+}
 
 }  // namespace goshawk::corridor_builder

@@ -9,7 +9,7 @@
 namespace goshawk::corridor_builder {
 namespace {
 
-constexpr int kSteps = 12;
+constexpr int kSteps = 8;
 constexpr double kFirstWeight = 1.0;
 constexpr double kLastWeight = 0.02;
 
@@ -121,7 +121,7 @@ bool grow_inscribed_ellipsoid(std::span<const Plane> planes, const Ellipsoid& in
   double weight = kFirstWeight;
   for (int k = 0; k < kSteps; ++k) {
     if (!newton_step(s, planes, weight) && weight <= kLastWeight) break;
-    weight = std::max(kLastWeight, 0.5 * weight);
+    weight = std::max(kLastWeight, 0.4 * weight);
   }
   Mat3 lower;
   lower << s.x[3], 0, 0, s.x[4], s.x[6], 0, s.x[5], s.x[7], s.x[8];

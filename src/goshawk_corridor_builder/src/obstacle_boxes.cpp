@@ -18,7 +18,9 @@ BitGrid::Word masked(const BitGrid::Word* row, int w, int x0, int x1) {
 
 }  // namespace
 
-void BoxSet::clear() { resize(0); }
+void BoxSet::clear() {
+  resize(0);
+}
 
 void BoxSet::add(const Vec3& lower, const Vec3& upper) {
   for (int a = 0; a < 3; ++a) {

@@ -37,8 +37,8 @@ class PolytopeInflation {
 
   std::vector<Plane> planes_;
   BoxSet active_;
-  std::vector<double> squared_;     // distance of each active box in the ellipsoid's metric
-  std::vector<std::size_t> seen_;   // how many planes each active box was trimmed by
+  std::vector<double> squared_;    // distance of each active box in the ellipsoid's metric
+  std::vector<std::size_t> seen_;  // how many planes each active box was trimmed by
   std::vector<unsigned char> keep_;
 };
 

@@ -88,8 +88,8 @@ void RedundancyFilter::clip(const Plane& plane, std::size_t index) {
 // The planes at the vertex that lies farthest along the normal are the ones to try.
 bool RedundancyFilter::follows_from_kept(std::span<const Plane> planes, std::size_t k, double far,
                                          double tolerance) const {
-  const auto farthest = std::min_element(
-      vertices_.begin(), vertices_.end(), [&](const Vertex& a, const Vertex& b) {
+  const auto farthest =
+      std::min_element(vertices_.begin(), vertices_.end(), [&](const Vertex& a, const Vertex& b) {
         return planes[k].slack(a.x) < planes[k].slack(b.x);
       });
   if (farthest == vertices_.end()) return false;

@@ -8,7 +8,9 @@
 namespace goshawk::corridor_builder {
 namespace {
 
-Vec3 point_at(const Segment& s, double t) { return s.p + t * (s.q - s.p); }
+Vec3 point_at(const Segment& s, double t) {
+  return s.p + t * (s.q - s.p);
+}
 
 Vec3 to_box(const Vec3& x, const Vec3& lower, const Vec3& upper) {
   return x.cwiseMax(lower).cwiseMin(upper) - x;

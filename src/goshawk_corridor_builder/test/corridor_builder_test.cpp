@@ -11,7 +11,7 @@
 namespace goshawk::corridor_builder {
 namespace {
 
-using support::faults_of;
+using test_support::faults_of;
 using ::testing::HasSubstr;
 
 CorridorBuilder builder_of(const Config& config) {
@@ -29,7 +29,7 @@ void prove(CorridorBuilder& builder, const VoxelGrid& grid, int paths, Random& r
            Tally& tally) {
   for (int k = 0; k < paths; ++k) {
     const auto path =
-        support::random_free_path(grid, 1 + random.below(4), random.uniform(0.3, 6.0), random);
+        test_support::random_free_path(grid, 1 + random.below(4), random.uniform(0.3, 6.0), random);
     if (path.empty()) continue;
     const auto corridor = builder.build(grid, path);
     if (!corridor.ok()) {
@@ -47,14 +47,15 @@ VoxelGrid random_world(int kind, Random& random) {
   const double resolution_m = random.chance(0.5) ? 0.2 : random.uniform(0.05, 0.5);
   const Vec3 origin(random.uniform(-50, 50), random.uniform(-50, 50), random.uniform(-5, 5));
   const Index3 size{8 + random.below(60), 8 + random.below(40), 4 + random.below(20)};
-  VoxelGrid grid = support::empty_world(size, resolution_m, origin);
-  if (kind == 0) support::add_noise(grid, random.uniform(0.0, 0.3), random);
+  VoxelGrid grid = test_support::empty_world(size, resolution_m, origin);
+  if (kind == 0) test_support::add_noise(grid, random.uniform(0.0, 0.3), random);
   if (kind == 1) {
-    grid = support::boxes_and_pillars(size, resolution_m, random.uniform(0.1, 0.5), resolution_m,
-                                      random.next());
+    grid = test_support::boxes_and_pillars(size, resolution_m, random.uniform(0.1, 0.5),
+                                           resolution_m, random.next());
   }
   if (kind == 2) {
-    grid = support::forest(size, resolution_m, 1 + random.below(12), resolution_m, random.next());
+    grid =
+        test_support::forest(size, resolution_m, 1 + random.below(12), resolution_m, random.next());
   }
   grid.geometry.origin_map = origin;
   return grid;
@@ -77,6 +78,22 @@ TEST(CorridorBuilder, NeverCutsIntoAnObstacleOnTenThousandRandomSegments) {
   RecordProperty("segments", tally.segments);
 }
 
+// A checker that finds nothing wrong proves little unless it sees what is wrong.
+TEST(CorridorBuilder, TheCheckerSeesPlanesThatAreAMicrometreTooFarOut) {
+  CorridorBuilder builder = builder_of({});
+  Random random(8);
+  const VoxelGrid grid = test_support::boxes_and_pillars({30, 40, 20}, 0.2, 0.4, 0.2, 1);
+  for (int k = 0; k < 20; ++k) {
+    const auto path = test_support::random_free_path(grid, 2, 3.0, random);
+    if (path.empty()) continue;
+    auto corridor = builder.build(grid, path);
+    ASSERT_TRUE(corridor.ok());
+    EXPECT_EQ(faults_of(*corridor, grid, path), "");
+    for (Polytope& polytope : corridor->polytopes) polytope.b.array() += 1e-6;
+    EXPECT_NE(faults_of(*corridor, grid, path), "");
+  }
+}
+
 TEST(CorridorBuilder, NeverCutsIntoAnObstacleWithOtherSettings) {
   Tally tally;
   prove_many({.local_box_m = 1.0, .growth_passes = 0}, 2, 45, 10, tally);
@@ -92,13 +109,12 @@ TEST(CorridorBuilder, BoxesNeverCutIntoAnObstacle) {
   EXPECT_EQ(tally.disjoint, 0);
 }
 
-
 constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 VoxelGrid world_with_wall() {  // x = 2.0 to 2.2 is blocked, all of y, z below 1.0
-  VoxelGrid grid = support::empty_world({20, 10, 10}, 0.2);
-  support::fill(grid, {10, 0, 0}, {11, 10, 5});
+  VoxelGrid grid = test_support::empty_world({20, 10, 10}, 0.2);
+  test_support::fill(grid, {10, 0, 0}, {11, 10, 5});
   return grid;
 }
 
@@ -115,7 +131,9 @@ class BothGenerators : public ::testing::TestWithParam<const char*> {
 
 INSTANTIATE_TEST_SUITE_P(Corridor, BothGenerators, ::testing::Values("ellipsoid", "box"));
 
-TEST_P(BothGenerators, SaysItsName) { EXPECT_EQ(builder_.implementation(), GetParam()); }
+TEST_P(BothGenerators, SaysItsName) {
+  EXPECT_EQ(builder_.implementation(), GetParam());
+}
 
 TEST_P(BothGenerators, RefusesAPathThatIsNoPath) {
   const VoxelGrid grid = world_with_wall();
@@ -141,8 +159,28 @@ TEST_P(BothGenerators, NamesTheSegmentThatIsBlockedOrLeavesTheMap) {
                ErrorCode::segment_blocked, "segment 0");
   expect_error(builder_.build(grid, std::vector{a, b, Vec3(0.5, 0.5, 2.5)}),
                ErrorCode::segment_blocked, "segment 1");
-  expect_error(builder_.build(grid, std::vector{Vec3(1e300, 0, 0), a}),
-               ErrorCode::segment_blocked, "leaves the map");
+  expect_error(builder_.build(grid, std::vector{Vec3(1e300, 0, 0), a}), ErrorCode::segment_blocked,
+               "leaves the map");
+}
+
+TEST_P(BothGenerators, StaysExactFarFromTheOriginAndRefusesAMapThatIsTooFar) {
+  VoxelGrid grid = world_with_wall();
+  const std::vector<Vec3> near{{2.0, 1.0, 0.5}, {0.5, 1.0, 0.5}, {1.5, 1.5, 1.9}};
+  for (const double away_m : {1e3, 1e5, 1e12}) {
+    grid.geometry.origin_map = Vec3(away_m, -away_m, 0.0);
+    std::vector<Vec3> path;
+    for (const Vec3& p : near) path.push_back(p + grid.geometry.origin_map);
+    const auto corridor = builder_.build(grid, path);
+    if (away_m > 1e6) {
+      expect_error(corridor, ErrorCode::invalid_input, "too far");
+      continue;
+    }
+    ASSERT_TRUE(corridor.ok()) << corridor.error().message;
+    for (const Polytope& polytope : corridor->polytopes) {
+      const Vec3 in_wall = grid.geometry.origin_map + Vec3(2.0 + 1e-6, 1.0, 0.5);
+      EXPECT_GT(polytope.violation(in_wall), 0.0);
+    }
+  }
 }
 
 TEST_P(BothGenerators, WrapsAPathOfNoLength) {
@@ -160,12 +198,12 @@ TEST_P(BothGenerators, WrapsAPathOfNoLength) {
 TEST_P(BothGenerators, StartAndGoalMayLieOnFacesEdgesAndCornersOfObstaclesAndOfTheMap) {
   const VoxelGrid grid = world_with_wall();
   const std::vector<std::vector<Vec3>> paths{
-      {{2.0, 1.0, 0.5}, {0.5, 1.0, 0.5}},              // begins on the wall's face
-      {{0.5, 1.0, 0.5}, {2.0, 1.0, 0.5}},              // ends there
-      {{2.0, 1.0, 1.0}, {0.5, 1.0, 0.5}},              // begins on its upper edge
-      {{1.0, 0.0, 0.5}, {1.0, 2.0, 0.5}},              // from map face to map face
-      {{0.0, 0.0, 0.0}, {4.0, 2.0, 2.0}},              // from corner to corner, over the wall's edge
-      {{0.0, 0.0, 2.0}, {4.0, 0.0, 2.0}},              // along an edge of the map
+      {{2.0, 1.0, 0.5}, {0.5, 1.0, 0.5}},  // begins on the wall's face
+      {{0.5, 1.0, 0.5}, {2.0, 1.0, 0.5}},  // ends there
+      {{2.0, 1.0, 1.0}, {0.5, 1.0, 0.5}},  // begins on its upper edge
+      {{1.0, 0.0, 0.5}, {1.0, 2.0, 0.5}},  // from map face to map face
+      {{0.0, 0.0, 0.0}, {4.0, 2.0, 2.0}},  // from corner to corner, over the wall's edge
+      {{0.0, 0.0, 2.0}, {4.0, 0.0, 2.0}},  // along an edge of the map
       {{0.1, 1.0, 0.5}, {2.0, 1.0, 1.5}, {3.9, 1.0, 0.5}},
   };
   for (const auto& path : paths) {
@@ -184,9 +222,9 @@ TEST(CorridorBuilder, FollowsAPathAlongAnObstaclesFace) {
 }
 
 TEST_P(BothGenerators, RefusesAGapOfNoWidth) {
-  VoxelGrid grid = support::empty_world({4, 4, 1}, 1.0);
-  support::fill(grid, {0, 2, 0}, {2, 4, 1});
-  support::fill(grid, {2, 0, 0}, {4, 2, 1});
+  VoxelGrid grid = test_support::empty_world({4, 4, 1}, 1.0);
+  test_support::fill(grid, {0, 2, 0}, {2, 4, 1});
+  test_support::fill(grid, {2, 0, 0}, {4, 2, 1});
   expect_error(builder_.build(grid, std::vector<Vec3>{{0.5, 0.5, 0.5}, {3.5, 3.5, 0.5}}),
                ErrorCode::segment_blocked, "segment 0");
   const auto bent = builder_.build(
@@ -195,13 +233,13 @@ TEST_P(BothGenerators, RefusesAGapOfNoWidth) {
 }
 
 TEST(CorridorBuilder, FillsAnEmptyWorldWithOnePolytope) {
-  const VoxelGrid grid = support::empty_world({10, 10, 10}, 0.2);
+  const VoxelGrid grid = test_support::empty_world({10, 10, 10}, 0.2);
   const std::vector<Vec3> path{{0.1, 0.1, 0.1}, {1.9, 0.1, 0.1}, {1.9, 1.9, 1.9}};
   const auto corridor = builder_of({}).build(grid, path);
   ASSERT_TRUE(corridor.ok()) << corridor.error().message;
   ASSERT_EQ(corridor->polytopes.size(), 1U);
   EXPECT_EQ(corridor->polytopes[0].faces(), 6);
-  EXPECT_NEAR(support::volume_of(corridor->polytopes[0]), 8.0, 1e-5);
+  EXPECT_NEAR(test_support::volume_of(corridor->polytopes[0]), 8.0, 1e-5);
 }
 
 TEST(CorridorBuilder, ConfigFaultsAreAllListedAtOnce) {
@@ -230,9 +268,9 @@ bool same_bits(const Corridor& a, const Corridor& b) {
 
 TEST_P(BothGenerators, AnswersTheSameBitsWhateverWasBuiltBefore) {
   Random random(11);
-  const VoxelGrid grid = support::boxes_and_pillars({30, 40, 20}, 0.2, 0.3, 0.2, 3);
+  const VoxelGrid grid = test_support::boxes_and_pillars({30, 40, 20}, 0.2, 0.3, 0.2, 3);
   for (int k = 0; k < 30; ++k) {
-    const auto path = support::random_free_path(grid, 3, 3.0, random);
+    const auto path = test_support::random_free_path(grid, 3, 3.0, random);
     if (path.empty()) continue;
     CorridorBuilder fresh = builder_of({.generator = GetParam()});
     const auto a = builder_.build(grid, path);
@@ -242,29 +280,33 @@ TEST_P(BothGenerators, AnswersTheSameBitsWhateverWasBuiltBefore) {
   }
 }
 
-// The world, cut out of a larger one and moved in it by whole voxels of a resolution that is a
-// power of two, is the same problem to the bit but for the last rounding of the offsets.
+// Only the last rounding of coordinates differs; with no relaxation (whose joints are centres of
+// largest balls, and those are not always unique) the planes agree as well.
 TEST_P(BothGenerators, MovesWithTheWorldByWholeVoxels) {
   Random random(12);
-  VoxelGrid grid = support::boxes_and_pillars({40, 30, 16}, 0.25, 0.3, 0.25, 5);
+  const VoxelGrid grid = test_support::boxes_and_pillars({40, 30, 16}, 0.25, 0.3, 0.25, 5);
   VoxelGrid moved = grid;
   const Vec3 shift(100 * 0.25, -37 * 0.25, 8 * 0.25);
   moved.geometry.origin_map += shift;
-  for (int k = 0; k < 30; ++k) {
-    const auto path = support::random_free_path(grid, 3, 3.0, random);
-    if (path.empty()) continue;
-    std::vector<Vec3> there;
-    for (const Vec3& p : path) there.push_back(p + shift);
-    const auto a = builder_.build(grid, path);
-    const auto b = builder_.build(moved, there);
-    ASSERT_TRUE(a.ok() && b.ok());
-    ASSERT_EQ(a->polytopes.size(), b->polytopes.size());
-    for (std::size_t i = 0; i < a->polytopes.size(); ++i) {
-      const Polytope& p = a->polytopes[i];
-      const Polytope& q = b->polytopes[i];
-      ASSERT_EQ(p.faces(), q.faces());
-      EXPECT_TRUE((p.A - q.A).cwiseAbs().maxCoeff() < 1e-6);
-      EXPECT_TRUE((p.b + p.A * shift - q.b).cwiseAbs().maxCoeff() < 1e-5);
+  for (const int passes : {0, 1}) {
+    CorridorBuilder builder = builder_of({.generator = GetParam(), .relax_passes = passes});
+    for (int k = 0; k < 30; ++k) {
+      const auto path = test_support::random_free_path(grid, 3, 3.0, random);
+      if (path.empty()) continue;
+      std::vector<Vec3> there;
+      for (const Vec3& p : path) there.push_back(p + shift);
+      const auto a = builder.build(grid, path);
+      const auto b = builder.build(moved, there);
+      ASSERT_TRUE(a.ok() && b.ok());
+      ASSERT_EQ(a->polytopes.size(), b->polytopes.size());
+      for (std::size_t i = 0; i < a->polytopes.size(); ++i) {
+        const Polytope& p = a->polytopes[i];
+        const Polytope& q = b->polytopes[i];
+        ASSERT_EQ(p.faces(), q.faces());
+        if (passes > 0) continue;
+        EXPECT_LT((p.A - q.A).cwiseAbs().maxCoeff(), 1e-6);
+        EXPECT_LT((p.b + p.A * shift - q.b).cwiseAbs().maxCoeff(), 1e-5);
+      }
     }
   }
 }

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-namespace goshawk::corridor_builder::support {
+namespace goshawk::corridor_builder::test_support {
 namespace {
 
 constexpr double kRounding_m = 1e-9;
@@ -87,9 +87,9 @@ std::vector<Vec3> vertices_of(const Polytope& polytope) {
         const Vec3 nk = polytope.A.row(k);
         const double det = line.dot(nk);
         if (std::abs(det) < 1e-9) continue;
-        const Vec3 p = (polytope.b[i] * nj.cross(nk) + polytope.b[j] * nk.cross(ni) +
-                        polytope.b[k] * line) /
-                       det;
+        const Vec3 p =
+            (polytope.b[i] * nj.cross(nk) + polytope.b[j] * nk.cross(ni) + polytope.b[k] * line) /
+            det;
         if (inside(polytope, p, kRounding_m)) vertices.push_back(p);
       }
     }
@@ -160,4 +160,4 @@ std::string faults_of(const Corridor& corridor, const VoxelGrid& grid,
   return faults;
 }
 
-}  // namespace goshawk::corridor_builder::support
+}  // namespace goshawk::corridor_builder::test_support

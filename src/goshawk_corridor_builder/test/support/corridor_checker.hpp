@@ -6,7 +6,7 @@
 #include "goshawk/core/grid_geometry.hpp"
 #include "goshawk/core/polytope.hpp"
 
-namespace goshawk::corridor_builder::support {
+namespace goshawk::corridor_builder::test_support {
 
 /// The corners of {p : A p <= b}, by trying every three planes; shares no code with the builder.
 std::vector<Vec3> vertices_of(const Polytope& polytope);
@@ -23,4 +23,4 @@ double volume_of(const Polytope& polytope);
 std::string faults_of(const Corridor& corridor, const VoxelGrid& grid,
                       std::span<const Vec3> path_map);
 
-}  // namespace goshawk::corridor_builder::support
+}  // namespace goshawk::corridor_builder::test_support

@@ -7,7 +7,7 @@
 #include "goshawk/core/line_of_sight.hpp"
 #include "goshawk/core/random.hpp"
 
-namespace goshawk::corridor_builder::support {
+namespace goshawk::corridor_builder::test_support {
 namespace {
 
 struct Open {
@@ -88,4 +88,4 @@ std::vector<Vec3> random_pruned_path(const VoxelGrid& grid, std::uint64_t seed) 
   return pruned_path(grid, ends[0], ends[1]);
 }
 
-}  // namespace goshawk::corridor_builder::support
+}  // namespace goshawk::corridor_builder::test_support

@@ -9,7 +9,7 @@
 #include "goshawk/core/line_of_sight.hpp"
 #include "goshawk/core/random.hpp"
 
-namespace goshawk::corridor_builder::support {
+namespace goshawk::corridor_builder::test_support {
 
 inline VoxelGrid empty_world(Index3 size, double resolution_m, Vec3 origin_map = Vec3::Zero()) {
   VoxelGrid grid;
@@ -56,8 +56,7 @@ inline VoxelGrid boxes_and_pillars(Index3 size, double resolution_m, double rati
     const int d = 1 + random.below(4);
     const bool pillar = random.chance(0.5);
     const int h = pillar ? size.z : 2 + random.below(std::max(1, size.z / 2));
-    const Index3 lo{random.below(size.x), random.below(size.y),
-                    pillar ? 0 : random.below(size.z)};
+    const Index3 lo{random.below(size.x), random.below(size.y), pillar ? 0 : random.below(size.z)};
     fill(raw, lo, {lo.x + w, lo.y + d, lo.z + h});
     grown.occupied = inflate(raw.occupied, radius_m, resolution_m).value();
   }
@@ -75,7 +74,8 @@ inline VoxelGrid forest(Index3 size, double resolution_m, int trees, double radi
     const double r = random.uniform(0.1, 0.4) / resolution_m;
     for (int y = int(cy - r) - 1; y <= int(cy + r) + 1; ++y) {
       for (int x = int(cx - r) - 1; x <= int(cx + r) + 1; ++x) {
-        if (std::hypot(x + 0.5 - cx, y + 0.5 - cy) < r) fill(grid, {x, y, 0}, {x + 1, y + 1, size.z});
+        if (std::hypot(x + 0.5 - cx, y + 0.5 - cy) < r)
+          fill(grid, {x, y, 0}, {x + 1, y + 1, size.z});
       }
     }
   }
@@ -116,4 +116,4 @@ inline std::vector<Vec3> random_free_path(const VoxelGrid& grid, int segments, d
   return path;
 }
 
-}  // namespace goshawk::corridor_builder::support
+}  // namespace goshawk::corridor_builder::test_support
