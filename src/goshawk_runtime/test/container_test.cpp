@@ -94,7 +94,8 @@ TEST(ContainerCall, NamesWhatIsWrong) {
   expect_fault({"hollow"}, HasSubstr("lacks GOSHAWK_REGISTER_COMPONENT"));
   expect_fault({"../probe"}, HasSubstr("'../probe' is not a name"));
   expect_fault({"probe", "--ros-args", "-x", "1"}, HasSubstr("'-x' is no option"));
-  expect_fault({"probe", "probe:b", "--ros-args", "-r", "__node:=c"}, HasSubstr("several components"));
+  expect_fault({"probe", "probe:b", "--ros-args", "-r", "__node:=c"},
+               HasSubstr("several components"));
   expect_fault({"probe", "probe"}, HasSubstr("two nodes named probe"));
   expect_fault({"probe:a b"}, HasSubstr("'a b' is not a name"));
 }
@@ -127,9 +128,8 @@ TEST(LoadComponent, KnowsWhatIsInstalled) {
 class Containers : public testing::Test {
  protected:
   void SetUp() override {
-    node_.subscribe<String>("/probe", Qos::latched(100), [this](const String& m, const auto&) {
-      hellos_.push_back(m.data());
-    });
+    node_.subscribe<String>("/probe", Qos::latched(100),
+                            [this](const String& m, const auto&) { hellos_.push_back(m.data()); });
   }
   bool hears(std::size_t count) {
     return spin_until(node_, [&] { return hellos_.size() >= count; });
@@ -171,7 +171,8 @@ TEST_F(Containers, GetLatchedTopicsAgainAfterAKill) {
   message.data("still here");
   ASSERT_TRUE(poke.publish(message));
   int poked = 0;
-  node_.subscribe<String>("/poked", Qos::reliable_last(), [&](const String&, const auto&) { ++poked; });
+  node_.subscribe<String>("/poked", Qos::reliable_last(),
+                          [&](const String&, const auto&) { ++poked; });
   for (int life = 1; life <= 2; ++life) {
     Container container({"probe"});
     EXPECT_TRUE(hears(std::size_t(life))) << "its latched hello in life " << life;

@@ -21,10 +21,11 @@ class Hostile : public testing::Test {
   void survives(const std::vector<Bytes>& payloads, const Message& good) {
     int got = 0;
     Message last;
-    victim_.subscribe<Message>("target", Qos::reliable_last(1000), [&](const Message& m, const auto&) {
-      last = m;
-      ++got;
-    });
+    victim_.subscribe<Message>("target", Qos::reliable_last(1000),
+                               [&](const Message& m, const auto&) {
+                                 last = m;
+                                 ++got;
+                               });
     const auto type = raw_message_type(message_type<Message>().name());
     const auto attacker = attacker_.advertise_raw("target", type, Qos::reliable_last(1000));
     ASSERT_TRUE(spin_until(victim_, [&] { return attacker.matched() > 0; }));
@@ -50,7 +51,8 @@ TEST_F(Hostile, BytesThatAreNoMessage) {
   good.header().frame_id("map");
   good.command_age(0.5);
   const Bytes bytes = encode(good);
-  std::vector<Bytes> payloads = {{}, {0}, {0, 1}, {0, 1, 0, 0}, Bytes(5, 0xff), Bytes(10'000, 0xff)};
+  std::vector<Bytes> payloads = {
+      {}, {0}, {0, 1}, {0, 1, 0, 0}, Bytes(5, 0xff), Bytes(10'000, 0xff)};
   for (std::size_t n = 4; n < bytes.size(); n += 3) {
     payloads.emplace_back(bytes.begin(), bytes.begin() + long(n));
   }
@@ -70,7 +72,8 @@ TEST_F(Hostile, LengthsOfABillion) {
   good.poses().resize(3);
   Bytes text = encode(good), sequence = encode(good);
   for (int i = 0; i < 4; ++i) {
-    text[std::size_t(12 + i)] = sequence[std::size_t(20 + i)] = (unsigned char)(1'000'000'000 >> 8 * i);
+    text[std::size_t(12 + i)] = sequence[std::size_t(20 + i)] =
+        (unsigned char)(1'000'000'000 >> 8 * i);
   }
   survives({text, sequence}, good);
 }
@@ -89,7 +92,8 @@ TEST(Decode, SurvivesRandomBytes) {
   visualization_msgs::msg::MarkerArray out;
   for (int i = 0; i < 2000; ++i) {
     Bytes bytes = {0, (unsigned char)(random.below(2)), 0, 0};
-    for (int n = random.below(200); n > 0; --n) bytes.push_back((unsigned char)(random.below(3) == 0 ? random.below(256) : 0));
+    for (int n = random.below(200); n > 0; --n)
+      bytes.push_back((unsigned char)(random.below(3) == 0 ? random.below(256) : 0));
     (void)decode(bytes, out);
   }
 }

@@ -39,8 +39,8 @@ std::vector<UdpSocket> own_udp_sockets() {
       for (int i = 0; i < 8; ++i) words >> word;  // the tenth is the inode
       if (!own.contains(word)) continue;
       const auto colon = local.find(':');
-      sockets.push_back({local.substr(0, colon),
-                         unsigned(std::stoul(local.substr(colon + 1), nullptr, 16))});
+      sockets.push_back(
+          {local.substr(0, colon), unsigned(std::stoul(local.substr(colon + 1), nullptr, 16))});
     }
   }
   return sockets;
@@ -97,9 +97,11 @@ TEST(Loopback, NeitherSendsNorJoinsMulticast) {
     Node node(*context, "node");
     Node other_node(*other, "other");
     int got = 0;
-    node.subscribe<std_msgs::msg::String>("t", Qos::latched(), [&](const auto&, const auto&) { ++got; });
+    node.subscribe<std_msgs::msg::String>("t", Qos::latched(),
+                                          [&](const auto&, const auto&) { ++got; });
     (void)other_node.advertise<std_msgs::msg::String>("t", Qos::latched()).publish({});
-    runtime_test::spin_until(node, [] { return false; }, 0.5);
+    runtime_test::spin_until(
+        node, [] { return false; }, 0.5);
     if (multicast_sent() == sent && multicast_memberships() == members) return;
   }
   FAIL() << "multicast went out, or was joined, in five of five trials";

@@ -84,7 +84,8 @@ TEST_F(Nodes, GiveALateComerTheNewestLatchedMessages) {
   bool volatile_got = false;
   b_.subscribe<String>("latched", Qos::reliable_last(),
                        [&](const String&, const auto&) { volatile_got = true; });
-  spin_until(b_, [] { return false; }, 0.3);
+  spin_until(
+      b_, [] { return false; }, 0.3);
   EXPECT_FALSE(volatile_got) << "who does not ask for old messages gets none";
 }
 
@@ -108,7 +109,8 @@ TEST_F(Nodes, KeepTypesOfOneTopicApart) {
   int got = 0;
   b_.subscribe<Octomap>("mixed", Qos::latched(), [&](const Octomap&, const auto&) { ++got; });
   (void)strings.publish(text("not a map"));
-  spin_until(b_, [] { return false; }, 0.5);
+  spin_until(
+      b_, [] { return false; }, 0.5);
   EXPECT_EQ(got, 0);
   EXPECT_THROW(a_.advertise<Octomap>("mixed", Qos::latched()), StartupFault);
   EXPECT_THROW(a_.subscribe<Octomap>("mixed", Qos::latched(), nullptr), StartupFault);
@@ -119,7 +121,8 @@ TEST_F(Nodes, ReadOneTopicAsStructsAndAsBytesInOneProcess) {
   std::string typed;
   std::vector<unsigned char> raw;
   const auto raw_type = raw_message_type(wire_type_name("std_msgs/msg/String"));
-  b_.subscribe<String>("both", Qos::latched(), [&](const String& m, const auto&) { typed = m.data(); });
+  b_.subscribe<String>("both", Qos::latched(),
+                       [&](const String& m, const auto&) { typed = m.data(); });
   b_.subscribe_raw("both", raw_type, Qos::latched(), [&](const void* m, const auto&) {
     raw = *static_cast<const std::vector<unsigned char>*>(m);
   });
@@ -252,7 +255,9 @@ TEST_F(Nodes, ServeTimersDuringAFlood) {
 
 TEST_F(Nodes, LetABugInACallbackOut) {
   a_.every(0.001, [] { throw std::logic_error("bug"); });
-  EXPECT_THROW(spin_until(a_, [] { return false; }, 5.0), std::logic_error);
+  EXPECT_THROW(spin_until(
+                   a_, [] { return false; }, 5.0),
+               std::logic_error);
 }
 
 TEST(Contexts, RefuseDomainsThatAreNone) {

@@ -71,7 +71,8 @@ TEST(Parameters, ReadsEveryType) {
 }
 
 TEST(Parameters, NamesEachKindOfFault) {
-  EXPECT_THAT(fault("radius: 1"), HasSubstr("radius: no such parameter of search; did you mean radius_m?"));
+  EXPECT_THAT(fault("radius: 1"),
+              HasSubstr("radius: no such parameter of search; did you mean radius_m?"));
   EXPECT_THAT(fault("radius_m: wide"), HasSubstr("radius_m: 'wide' is not a number"));
   EXPECT_THAT(fault("radius_m: '1.0'"), HasSubstr("is not a number"));
   EXPECT_THAT(fault("radius_m: 11"), HasSubstr("at least 0 and at most 10"));
@@ -96,10 +97,10 @@ TEST(Parameters, ListsAllFaultsAtOnce) {
       "    radius_m: 11\n    count: many\n    enabled: {}\n    planer: astar\n    label: ok\n");
   ASSERT_FALSE(config);
   EXPECT_EQ(config.code(), ErrorCode::invalid_parameter);
-  EXPECT_THAT(config.error().message,
-              AllOf(HasSubstr("4 parameter faults"), HasSubstr("radius_m"), HasSubstr("count"),
-                    HasSubstr("enabled"), HasSubstr("did you mean planner?"),
-                    Not(HasSubstr("label"))));
+  EXPECT_THAT(
+      config.error().message,
+      AllOf(HasSubstr("4 parameter faults"), HasSubstr("radius_m"), HasSubstr("count"),
+            HasSubstr("enabled"), HasSubstr("did you mean planner?"), Not(HasSubstr("label"))));
 }
 
 TEST(Parameters, TakesTheSectionsMeantForTheNode) {
@@ -148,7 +149,8 @@ TEST(Parameters, OptionsBeatFilesAndLaterOnesEarlierOnes) {
 }
 
 TEST(Parameters, OptionsMayNameTheirNodeAndQuoteStrings) {
-  const auto args = ros_args({"-p", "tracker:count:=9", "-p", "search:count:=8", "-p", "label:='7'"});
+  const auto args =
+      ros_args({"-p", "tracker:count:=9", "-p", "search:count:=8", "-p", "label:='7'"});
   const auto config = read_parameters<Config>(*args.parameters_of("search"), "search");
   ASSERT_TRUE(config) << config.error().message;
   EXPECT_EQ(config->count, 8);

@@ -37,8 +37,8 @@ TEST(RosArgs, PutsTopicsUnderTheNamespace) {
 }
 
 TEST(RosArgs, RemapsTopics) {
-  const auto args = parse({"-r", "__ns:=/uav1", "-r", "path:=other", "-r", "/tf:=/tf2", "-r",
-                           "/uav1/map:=/world"});
+  const auto args = parse(
+      {"-r", "__ns:=/uav1", "-r", "path:=other", "-r", "/tf:=/tf2", "-r", "/uav1/map:=/world"});
   EXPECT_EQ(args.resolve_topic("path"), "/uav1/other");
   EXPECT_EQ(args.resolve_topic("/uav1/path"), "/uav1/other");
   EXPECT_EQ(args.resolve_topic("/path"), "/path");
