@@ -17,8 +17,8 @@ class Encoder {
  public:
   std::vector<unsigned char> take() { return std::move(bytes_); }
   Error error(const Type& type) const {
-    return fail(ErrorCode::invalid_input,
-                "this is no " + std::string(type.name) + ": " + path_ + (path_.empty() ? "" : " ") + fault_);
+    return fail(ErrorCode::invalid_input, "this is no " + std::string(type.name) + ": " + path_ +
+                                              (path_.empty() ? "" : " ") + fault_);
   }
 
   // json == nullptr: left out, so everything inside is zero.
@@ -64,8 +64,8 @@ class Encoder {
     } else if (json == nullptr) {
       count = field.size;
     } else if (count != field.size) {
-      fault_ = "has " + std::to_string(count) + " elements: it must have " +
-               std::to_string(field.size);
+      fault_ =
+          "has " + std::to_string(count) + " elements: it must have " + std::to_string(field.size);
       return false;
     }
     for (std::size_t i = 0; i < count; ++i) {
@@ -79,19 +79,32 @@ class Encoder {
 
   bool write_one(const Field& field, const Json* json) {
     switch (field.kind) {
-      case Kind::boolean: return write_bool(json);
-      case Kind::int8: return write_integer<std::int8_t>(json);
-      case Kind::uint8: return write_integer<std::uint8_t>(json);
-      case Kind::int16: return write_integer<std::int16_t>(json);
-      case Kind::uint16: return write_integer<std::uint16_t>(json);
-      case Kind::int32: return write_integer<std::int32_t>(json);
-      case Kind::uint32: return write_integer<std::uint32_t>(json);
-      case Kind::int64: return write_integer<std::int64_t>(json);
-      case Kind::uint64: return write_integer<std::uint64_t>(json);
-      case Kind::float32: return write_float<float>(json);
-      case Kind::float64: return write_float<double>(json);
-      case Kind::string: return write_string(json);
-      case Kind::structure: return write(all_types()[std::size_t(field.type)], json);
+      case Kind::boolean:
+        return write_bool(json);
+      case Kind::int8:
+        return write_integer<std::int8_t>(json);
+      case Kind::uint8:
+        return write_integer<std::uint8_t>(json);
+      case Kind::int16:
+        return write_integer<std::int16_t>(json);
+      case Kind::uint16:
+        return write_integer<std::uint16_t>(json);
+      case Kind::int32:
+        return write_integer<std::int32_t>(json);
+      case Kind::uint32:
+        return write_integer<std::uint32_t>(json);
+      case Kind::int64:
+        return write_integer<std::int64_t>(json);
+      case Kind::uint64:
+        return write_integer<std::uint64_t>(json);
+      case Kind::float32:
+        return write_float<float>(json);
+      case Kind::float64:
+        return write_float<double>(json);
+      case Kind::string:
+        return write_string(json);
+      case Kind::structure:
+        return write(all_types()[std::size_t(field.type)], json);
     }
     throw std::logic_error("json_to_cdr: unknown kind");
   }
@@ -114,9 +127,8 @@ class Encoder {
     T value = 0;
     if (json != nullptr) {
       if (!json->is_number_integer()) return wrong(*json, "a whole number");
-      const bool fits = json->is_number_unsigned()
-                            ? std::in_range<T>(json->get<std::uint64_t>())
-                            : std::in_range<T>(json->get<std::int64_t>());
+      const bool fits = json->is_number_unsigned() ? std::in_range<T>(json->get<std::uint64_t>())
+                                                   : std::in_range<T>(json->get<std::int64_t>());
       if (!fits) {
         return wrong(*json, "from " + std::to_string(std::numeric_limits<T>::min()) + " to " +
                                 std::to_string(std::numeric_limits<T>::max()));

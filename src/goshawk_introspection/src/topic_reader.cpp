@@ -28,7 +28,8 @@ Found choose(const std::vector<runtime::EndpointInfo>& endpoints) {
     std::cerr << "goshawk: " << relevant.front().topic << " has " << types.size()
               << " types; this reads " << found.type << std::endl;
   }
-  found.qos.reliable = !writers.empty() && std::ranges::all_of(writers, &runtime::EndpointInfo::reliable);
+  found.qos.reliable =
+      !writers.empty() && std::ranges::all_of(writers, &runtime::EndpointInfo::reliable);
   found.qos.transient_local =
       !writers.empty() && std::ranges::all_of(writers, &runtime::EndpointInfo::transient_local);
   if (found.qos.reliable) found.qos.depth = 100;
@@ -62,13 +63,13 @@ int read_topic(const CommonOptions& common, const ReadOptions& options,
   int received = 0;
   bool done = false;
   const auto type = runtime::raw_message_type(runtime::wire_type_name(found.type));
-  s.node().subscribe_raw(*name, type, found.qos,
-                         [&](const void* data, const runtime::MessageInfo& info) {
-                           if (done) return;
-                           const auto& bytes = *static_cast<const std::vector<unsigned char>*>(data);
-                           ++received;
-                           done = !message({bytes, info.received_ns}) || received == options.count;
-                         });
+  s.node().subscribe_raw(
+      *name, type, found.qos, [&](const void* data, const runtime::MessageInfo& info) {
+        if (done) return;
+        const auto& bytes = *static_cast<const std::vector<unsigned char>*>(data);
+        ++received;
+        done = !message({bytes, info.received_ns}) || received == options.count;
+      });
   if (!s.wait_for(common.timeout_s, [&] { return received > 0; }) && received == 0 &&
       !Interruptible::interrupted()) {
     const std::string sentence =
@@ -86,7 +87,8 @@ int read_topic(const CommonOptions& common, const ReadOptions& options,
   while (!done && !Interruptible::interrupted()) {
     s.wait_for(1.0, [&] { return done; });
     const std::chrono::duration<double> silent = Steady::now() - last;
-    if (options.count > 0 && !done && received == before && silent.count() > std::max(2.0, common.timeout_s)) {
+    if (options.count > 0 && !done && received == before &&
+        silent.count() > std::max(2.0, common.timeout_s)) {
       return say_nothing("only " + std::to_string(received) + " of " +
                          std::to_string(options.count) + " messages came on " + *name);
     }

@@ -8,8 +8,8 @@
 #include <new>
 #include <nlohmann/json.hpp>
 
-#include "goshawk/runtime/message_type.hpp"
 #include "goshawk/runtime/context.hpp"
+#include "goshawk/runtime/message_type.hpp"
 #include "goshawk_msgs.h"
 #include "nav_msgs.h"
 #include "octomap_msgs.h"
@@ -35,7 +35,9 @@ void operator delete(void* memory) noexcept {
   if (memory != nullptr) g_now -= malloc_usable_size(memory);
   std::free(memory);
 }
-void operator delete(void* memory, std::size_t) noexcept { operator delete(memory); }
+void operator delete(void* memory, std::size_t) noexcept {
+  operator delete(memory);
+}
 
 namespace goshawk::introspection {
 namespace {
@@ -114,7 +116,9 @@ TYPED_TEST(EveryMessage, SurvivesFlippedBitsWithoutClaimingMemory) {
   }
 }
 
-const Type& type(const char* name) { return **find_type(name); }
+const Type& type(const char* name) {
+  return **find_type(name);
+}
 
 TEST(CdrToJson, ReadsBothByteOrders) {
   const Bytes little = {0, 1, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0};
@@ -175,8 +179,9 @@ std::string fault(const char* type_name, const char* json) {
 }
 
 TEST(JsonToCdr, NamesTheNearestFieldForAnUnknownOne) {
-  EXPECT_THAT(fault("geometry_msgs/msg/PoseStamped", R"({"header": {"frameid": "map"}})"),
-              HasSubstr("header 'frameid' is no field of std_msgs/msg/Header; did you mean frame_id?"));
+  EXPECT_THAT(
+      fault("geometry_msgs/msg/PoseStamped", R"({"header": {"frameid": "map"}})"),
+      HasSubstr("header 'frameid' is no field of std_msgs/msg/Header; did you mean frame_id?"));
   EXPECT_THAT(fault("std_msgs/msg/String", R"({"zzzzzzz": 1})"), HasSubstr("its fields are data"));
 }
 

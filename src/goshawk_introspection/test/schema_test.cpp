@@ -68,9 +68,9 @@ TEST(Schema, WritesMsgTextThatRecordersStore) {
       "std_msgs/Header header  # frame \"map\"\ngeometry_msgs/PoseStamped[] poses  # [m]\n" + bar +
       "\nMSG: std_msgs/Header\nbuiltin_interfaces/Time stamp  #"))
       << *text;
-  for (const char* inner : {"std_msgs/Header", "geometry_msgs/PoseStamped", "geometry_msgs/Pose",
-                            "geometry_msgs/Point", "geometry_msgs/Quaternion",
-                            "builtin_interfaces/Time"}) {
+  for (const char* inner :
+       {"std_msgs/Header", "geometry_msgs/PoseStamped", "geometry_msgs/Pose", "geometry_msgs/Point",
+        "geometry_msgs/Quaternion", "builtin_interfaces/Time"}) {
     const std::string head = bar + "\nMSG: " + inner + "\n";
     EXPECT_THAT(*text, HasSubstr(head));
     EXPECT_EQ(text->find(head), text->rfind(head)) << inner << " stands there twice";

@@ -1,5 +1,6 @@
 #include "pictures.hpp"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <cmath>
 

@@ -6,6 +6,7 @@
 
 #include <cstdio>
 #include <optional>
+#include <set>
 #include <thread>
 
 #include "goshawk/runtime/component.hpp"
@@ -32,6 +33,10 @@ Result<std::vector<Wanted>> wanted_components(const std::vector<std::string>& ar
                                               const RosArgs& ros_args) {
   std::vector<Wanted> wanted;
   for (const auto& argument : arguments) {
+    if (argument.starts_with("-")) {
+      return fail(ErrorCode::invalid_input,
+                  "'" + argument + "' is no component; options stand behind --ros-args");
+    }
     const auto colon = argument.find(':');
     const std::string component = argument.substr(0, colon);
     wanted.push_back({component, colon == std::string::npos ? component
@@ -51,6 +56,18 @@ Result<std::vector<Wanted>> wanted_components(const std::vector<std::string>& ar
     wanted.front().node = ros_args.node_name;
   }
   return wanted;
+}
+
+Status check_nodes(const std::vector<Wanted>& wanted) {
+  std::set<std::string> names;
+  for (const auto& w : wanted) {
+    if (auto status = check_topic_name(w.node); !status) return status;
+    if (!names.insert(w.node).second) {
+      return fail(ErrorCode::invalid_input,
+                  "there would be two nodes named " + w.node + ": write COMPONENT:NODE_NAME");
+    }
+  }
+  return success();
 }
 
 struct Running {
@@ -126,5 +143,6 @@ int main(int argc, char** argv) {
   if (!ros_args) return complain(ros_args.error());
   auto wanted = wanted_components(arguments, *ros_args);
   if (!wanted) return complain(wanted.error());
+  if (auto status = check_nodes(*wanted); !status) return complain(status.error());
   return run(*wanted, *ros_args, signals);
 }

@@ -1,12 +1,16 @@
 #include "goshawk/runtime/context.hpp"
 
+#include <arpa/inet.h>
+#include <ifaddrs.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cstdlib>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
+#include <set>
 
 #include "any_type.hpp"
 #include "context_impl.hpp"
@@ -17,6 +21,7 @@ namespace {
 // Unicast discovery knocks at the ports of this many participants of the domain: more processes
 // than any launch file here starts, few enough that the knocking costs nothing.
 constexpr unsigned kMaxParticipants = 60;
+constexpr int kLastDomain = 232;  // the ports of more would be above 65535
 constexpr unsigned kSocketBuffer = 4 << 20;  // [byte] asked for; the kernel may give less
 
 std::vector<std::string> split(const std::string& list) {
@@ -27,6 +32,30 @@ std::vector<std::string> split(const std::string& list) {
     at = comma + 1;
   }
   return parts;
+}
+
+// Fast DDS takes an address that this machine lacks without a word, and then hears nothing.
+Status check_interfaces(const std::string& interfaces) {
+  if (interfaces == "loopback" || interfaces == "all") return success();
+  std::set<std::string> here;
+  ifaddrs* list = nullptr;
+  if (getifaddrs(&list) != 0) return fail(ErrorCode::io_failed, "cannot list the interfaces");
+  for (const ifaddrs* i = list; i != nullptr; i = i->ifa_next) {
+    if (i->ifa_addr == nullptr || i->ifa_addr->sa_family != AF_INET) continue;
+    char text[INET_ADDRSTRLEN];
+    const auto* address = reinterpret_cast<const sockaddr_in*>(i->ifa_addr);
+    if (inet_ntop(AF_INET, &address->sin_addr, text, sizeof text) != nullptr) here.insert(text);
+  }
+  freeifaddrs(list);
+  const auto wanted = split(interfaces);
+  const auto strange =
+      std::ranges::find_if(wanted, [&](const auto& address) { return !here.contains(address); });
+  if (!wanted.empty() && strange == wanted.end()) return success();
+  std::string known;
+  for (const auto& address : here) known += (known.empty() ? "" : ", ") + address;
+  return fail(ErrorCode::invalid_parameter,
+              "interfaces '" + interfaces + "' are not 'loopback', 'all' or IPv4 addresses of this "
+              "machine, which has " + known);
 }
 
 void use_udp(dds::DomainParticipantQos& qos, const std::string& interfaces) {
@@ -76,7 +105,7 @@ Result<ContextOptions> ContextOptions::from_environment() {
     const auto [end, error] =
         std::from_chars(view.data(), view.data() + view.size(), options.domain);
     if (error != std::errc{} || end != view.data() + view.size() || options.domain < 0 ||
-        options.domain > 232) {
+        options.domain > kLastDomain) {
       return fail(ErrorCode::invalid_parameter, "ROS_DOMAIN_ID is '" + std::string(text) +
                                                     "': it must be a number from 0 to 232");
     }
@@ -85,6 +114,11 @@ Result<ContextOptions> ContextOptions::from_environment() {
 }
 
 Result<std::unique_ptr<Context>> Context::create(const ContextOptions& options) {
+  if (options.domain < 0 || options.domain > kLastDomain) {
+    return fail(ErrorCode::invalid_parameter, "domain " + std::to_string(options.domain) +
+                                                  " does not exist: it must be from 0 to 232");
+  }
+  if (auto status = check_interfaces(options.interfaces); !status) return status.error();
   auto impl = std::make_unique<Impl>();
   impl->domain = options.domain;
   auto* factory = dds::DomainParticipantFactory::get_instance();

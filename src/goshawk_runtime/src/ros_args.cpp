@@ -65,14 +65,15 @@ Status take_option(RosArgs& args, const std::string& option, const std::string& 
   if (option == "--log-level") {
     static constexpr const char* kLevels[] = {"trace", "debug", "info", "warn", "error", "off"};
     if (std::ranges::find(kLevels, value) == std::end(kLevels)) {
-      return fail(ErrorCode::invalid_input, "log level '" + value +
-                                                "' is not trace, debug, info, warn, error or off");
+      return fail(ErrorCode::invalid_input,
+                  "log level '" + value + "' is not trace, debug, info, warn, error or off");
     }
     args.log_level = value;
     return success();
   }
-  return fail(ErrorCode::invalid_input,
-              "'" + option + "' is no option of --ros-args: use -r, -p, --params-file, --log-level");
+  return fail(
+      ErrorCode::invalid_input,
+      "'" + option + "' is no option of --ros-args: use -r, -p, --params-file, --log-level");
 }
 
 }  // namespace

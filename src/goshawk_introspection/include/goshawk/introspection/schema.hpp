@@ -11,7 +11,18 @@
 namespace goshawk::introspection {
 
 enum class Kind : std::uint8_t {
-  boolean, int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64, string,
+  boolean,
+  int8,
+  uint8,
+  int16,
+  uint16,
+  int32,
+  uint32,
+  int64,
+  uint64,
+  float32,
+  float64,
+  string,
   structure
 };
 
@@ -27,7 +38,7 @@ struct Field {
 };
 
 struct Type {
-  std::string_view name;     // "goshawk_msgs/msg/Path"
+  std::string_view name;  // "goshawk_msgs/msg/Path"
   std::string_view comment;
   std::span<const Field> fields;
   std::uint32_t least_size;  // [byte] no value of this type is shorter in CDR

@@ -43,7 +43,8 @@ class Context {
  public:
   struct Impl;
 
-  /// @return io_failed with a sentence where the domain cannot be joined
+  /// @return invalid_parameter for a domain or an interface that is not there, io_failed with a
+  /// sentence where the domain cannot be joined
   static Result<std::unique_ptr<Context>> create(const ContextOptions& options);
   ~Context();
 

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <unistd.h>
+
+#include "goshawk/runtime/node.hpp"
+
+namespace goshawk::runtime_test {
+
+/// A domain that the process id picks, so that tests at the same time do not meet.
+inline int domain() { return 100 + int(getpid() % 101); }
+
+inline std::unique_ptr<runtime::Context> join(std::vector<std::string> node_names = {}) {
+  runtime::ContextOptions options;
+  options.domain = domain();
+  options.node_names = std::move(node_names);
+  auto context = runtime::Context::create(options);
+  if (!context) throw std::runtime_error(context.error().message);
+  return *std::move(context);
+}
+
+/// Serves the node until done(), for at most `most_s`. @return done()
+template <typename Done>
+bool spin_until(runtime::Node& node, const Done& done, double most_s = 10.0) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(most_s);
+  while (!done() && std::chrono::steady_clock::now() < end) node.spin_some(0.02);
+  return done();
+}
+
+}  // namespace goshawk::runtime_test

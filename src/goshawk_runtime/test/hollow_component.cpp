@@ -1,0 +1,4 @@
+// Named like a component, but registers none.
+extern "C" int hollow() {
+  return 0;
+}
