@@ -15,17 +15,6 @@ namespace {
 
 using Node = ObstacleBits::Node;
 
-// A straight move's axis and sign; axis -1 for the others.
-struct StraightMove {
-  int axis;
-  int sign;
-};
-constexpr StraightMove straight_move(int direction) {
-  const Index3 s = step_of(direction);
-  if (axes_changed(direction) != 1) return {-1, 0};
-  return s.x != 0 ? StraightMove{0, s.x} : s.y != 0 ? StraightMove{1, s.y} : StraightMove{2, s.z};
-}
-
 /// Heuristic: a functor of move_cost.hpp. kJumps: canonical successors and straight jumps.
 template <typename Heuristic, bool kJumps>
 class GridSearch final : public GridPlanner {
@@ -42,7 +31,7 @@ class GridSearch final : public GridPlanner {
   void run();
   void expand(Node node);
   void reach(Node node, Index3 at, Label label);
-  int jump(int direction, Index3 from) const;
+  int jump(const Move& move, Index3 from) const;
   void trace(VoxelPath& path) const;
 
   std::string_view name_;
@@ -166,27 +155,40 @@ void GridSearch<Heuristic, kJumps>::expand(Node node) {
   const Index3 at = bits_.index(node);
   const int arrival = kJumps ? LabelTable::direction(label) : kNoDirection;
   BlockMask moves = rules_.successors(arrival, bits_.block(node));
+  // Two passes, so that the labels come from memory at the same time.
+  struct Edge {
+    Node node;
+    int direction;
+    int count;
+  };
+  std::array<Edge, kDirections> edges;
+  std::size_t made = 0;
   for (; moves != 0; moves &= moves - 1) {
     const int d = std::countr_zero(moves);
-    const Index3 step = step_of(d);
-    const int count = kJumps ? jump(d, at) : 1;
+    const int count = kJumps ? jump(kMoves[std::size_t(d)], at) : 1;
     if (count <= 0) continue;
-    const Cost cost = count * kMoveCost[std::size_t(axes_changed(d))];
-    const Index3 next{at.x + count * step.x, at.y + count * step.y, at.z + count * step.z};
-    reach(Node(node + count * bits_.offset(d)), next, LabelTable::extend(label, cost, d));
+    const Node next = Node(node + count * bits_.offset(d));
+    labels_.prefetch(next);
+    edges[made++] = {next, d, count};
+  }
+  for (std::size_t k = 0; k < made; ++k) {
+    const Edge& edge = edges[k];
+    const Move& move = kMoves[std::size_t(edge.direction)];
+    const Index3 next{at.x + edge.count * move.step.x, at.y + edge.count * move.step.y,
+                      at.z + edge.count * move.step.z};
+    reach(edge.node, next, LabelTable::extend(label, edge.count * move.cost, edge.direction));
   }
 }
 
-// How many moves in this direction make one edge of the search; 0 or less for a dead end.
+// How many moves of this kind make one edge of the search; 0 or less for a dead end.
 template <typename Heuristic, bool kJumps>
-int GridSearch<Heuristic, kJumps>::jump(int direction, Index3 from) const {
-  const StraightMove move = straight_move(direction);
+int GridSearch<Heuristic, kJumps>::jump(const Move& move, Index3 from) const {
   if (move.axis < 0) return 1;
   const int count = bits_.straight_jump(rule_, move.axis, move.sign, from);
+  // The goal ends a jump, too.
   const Index3 left = goal_ - from;
   const int along = move.sign * (move.axis == 0 ? left.x : move.axis == 1 ? left.y : left.z);
-  const bool in_line = (move.axis == 0 || left.x == 0) && (move.axis == 1 || left.y == 0) &&
-                       (move.axis == 2 || left.z == 0);
+  const bool in_line = std::abs(left.x) + std::abs(left.y) + std::abs(left.z) == along;
   return in_line && along > 0 && along <= std::abs(count) ? along : count;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <cstdint>
-#include <cstdlib>
+#include <cstddef>
 #include <memory>
 
 #include "goshawk/path_search/move_cost.hpp"
@@ -21,17 +21,13 @@ inline constexpr int kCostBits = 43;
 inline constexpr Cost kMaxCost = (Cost{1} << kCostBits) - 1;  // 4 million voxels
 inline constexpr Label kExpanded = 1;
 
-/// One label a node, 8 bytes. The memory comes from calloc: on a big map the pages that a search
-/// does not touch are never made.
+/// One label a node, 8 bytes. The memory is mapped, not written: on a big map the pages that no
+/// search touches are never made. Pages are asked to be large, for a search jumps between layers
+/// that lie megabytes apart.
 class LabelTable {
  public:
-  /// @return false where there is no memory for so many
-  bool resize(std::int64_t nodes) {
-    labels_.reset(static_cast<Label*>(std::calloc(std::size_t(nodes), sizeof(Label))));
-    nodes_ = labels_ ? nodes : 0;
-    query_ = 0;
-    return labels_ != nullptr;
-  }
+  /// All labels empty. @return false where there is no memory for so many
+  bool resize(std::int64_t nodes);
 
   /// Forgets all labels. Once in 32767 queries the table is renewed, at the price of resize().
   /// @return false where that found no memory
@@ -44,6 +40,9 @@ class LabelTable {
 
   Label& operator[](std::uint32_t node) { return labels_.get()[node]; }
   Label operator[](std::uint32_t node) const { return labels_.get()[node]; }
+
+  /// Asks for a label that is read soon.
+  void prefetch(std::uint32_t node) const { __builtin_prefetch(labels_.get() + node, 1); }
 
   /// The label of cost 0, without direction.
   Label root() const { return root_; }
@@ -61,12 +60,13 @@ class LabelTable {
   }
 
  private:
-  struct Free {
-    void operator()(Label* labels) const { std::free(labels); }
+  struct Unmap {
+    std::size_t bytes;
+    void operator()(Label* labels) const;
   };
   static constexpr Label kLastQuery = (Label{1} << 15) - 1;
 
-  std::unique_ptr<Label, Free> labels_;
+  std::unique_ptr<Label, Unmap> labels_;
   std::int64_t nodes_ = 0;
   Label query_ = 0;
   Label root_ = 0;

@@ -35,6 +35,29 @@ constexpr int axes_changed(int direction) {
   return (s.x != 0) + (s.y != 0) + (s.z != 0);
 }
 
+/// All that the search asks of a move, looked up: the formulas above divide.
+struct Move {
+  Index3 step;
+  Cost cost = 0;
+  int axis = -1;  // 0, 1, 2 for a straight move
+  int sign = 0;   // of a straight move
+};
+constexpr std::array<Move, kDirections> make_moves() {
+  std::array<Move, kDirections> moves{};
+  for (int d = 0; d < kDirections; ++d) {
+    const Index3 s = step_of(d);
+    const int axes = axes_changed(d);
+    Move& move = moves[std::size_t(d)];
+    move.step = s;
+    move.cost = kMoveCost[std::size_t(axes)];
+    if (axes != 1) continue;
+    move.axis = s.x != 0 ? 0 : s.y != 0 ? 1 : 2;
+    move.sign = s.x + s.y + s.z;
+  }
+  return moves;
+}
+inline constexpr std::array<Move, kDirections> kMoves = make_moves();
+
 /// Lower bounds on the cost between two voxels, in the units above; each a functor, so that the
 /// search is compiled once for each.
 struct OctileHeuristic {
