@@ -4,9 +4,15 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 namespace goshawk::trajectory_optimizer {
 namespace {
+
+constexpr double kAllFaces = std::numeric_limits<double>::infinity();
+constexpr double kReach = 0.6;        // of faces at first, in ways of a mean piece at v_max
+constexpr double kCoarseGap = 1e-2;   // relative, of all passes but the last
+constexpr double kFineGap = 1e-3;
 
 // The largest speed and acceleration of a spline's hull, in units of the limits, piece by piece.
 struct Usage {
@@ -60,10 +66,19 @@ Result<Solution> TrajectoryOptimizer::Method::scale(const Request& request) {
 void TrajectoryOptimizer::Method::refine(const Request& request, Plan& plan) {
   const bool rests = request.rests();
   const int passes = 1 + config_.refinement_passes + (rests ? 0 : 4);
+  double reach = kReach;
   for (int pass = 0; pass < passes; ++pass) {
+    const double gap = pass < config_.refinement_passes ? kCoarseGap : kFineGap;
+    const Plan guess = plan;
     double kappa = 1.0;
-    if (!solve_scale(request, plan, kappa)) return;
-    const bool certified = consider(request, plan);
+    if (!solve_scale(request, plan, reach, gap, kappa)) return;
+    if (!consider(request, plan) && reach < kAllFaces) {  // through a face that was left out
+      reach = kAllFaces;
+      plan = guess;
+      if (!solve_scale(request, plan, reach, gap, kappa)) return;
+      consider(request, plan);
+    }
+    const bool certified = best_.has_value();
     // A moving end was linearised at kappa = 1: done when it has come to be so.
     const bool settled = certified && (rests || std::abs(kappa - 1.0) < 1e-3);
     if (pass >= config_.refinement_passes && settled) return;
@@ -111,10 +126,10 @@ void TrajectoryOptimizer::Method::try_longer(const Request& request, const Plan&
   }
 }
 
-bool TrajectoryOptimizer::Method::solve_scale(const Request& request, Plan& plan,
-                                              double& kappa) {
-  if (!make_problem(request, plan, true, config_.time_weight, problem_, units_)) return false;
-  last_ = solver_.solve(problem_, {config_.max_iterations, 1e-4, 1e-8, 1e-4});
+bool TrajectoryOptimizer::Method::solve_scale(const Request& request, Plan& plan, double reach,
+                                              double gap, double& kappa) {
+  if (!make_problem(request, plan, true, config_.time_weight, reach, problem_, units_)) return false;
+  last_ = solver_.solve(problem_, {config_.max_iterations, gap, 1e-8, 1e-3});
   iterations_ += last_.iterations;
   ++solves_;
   if (last_.status != SplineSolver::Status::solved || !(last_.eta > 0.0)) return false;
@@ -141,7 +156,7 @@ bool TrajectoryOptimizer::Method::solve_scale(const Request& request, Plan& plan
 bool TrajectoryOptimizer::Method::solve_fixed(const Request& request, Plan& plan) {
   ++solves_;
   last_ = {};
-  if (!make_problem(request, plan, false, 1.0, problem_, units_)) {
+  if (!make_problem(request, plan, false, 1.0, kAllFaces, problem_, units_)) {
     last_.status = SplineSolver::Status::infeasible;
     return false;
   }

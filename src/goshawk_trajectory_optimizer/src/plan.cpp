@@ -113,8 +113,9 @@ Joint to_units(const FlatState& state, const Units& units) {
 // Adds the faces that control point j of piece k must stay behind.
 class FaceWriter {
  public:
-  FaceWriter(const Request& request, const Plan& plan, const Units& units, SplineProblem& problem)
-      : request_(request), plan_(plan), units_(units), problem_(problem) {}
+  FaceWriter(const Request& request, const Plan& plan, const Units& units, double reach,
+             SplineProblem& problem)
+      : request_(request), plan_(plan), units_(units), reach_(reach), problem_(problem) {}
 
   // @return false where the point is constant and outside
   bool add(int piece, int j) {
@@ -126,8 +127,11 @@ class FaceWriter {
     const bool end = joint == 0 || joint == problem_.pieces();
     if (end) return add_at_end(joint, coefficients, polytope);
     const int begin = int(problem_.faces.size());
+    const Vec3 near = problem_.joints[std::size_t(joint)] * coefficients;
     for (int i = 0; i < polytope.faces(); ++i) {
-      problem_.faces.push_back({polytope.A.row(i).transpose(), offset(polytope, i)});
+      const Vec3 normal = polytope.A.row(i).transpose();
+      const double bound = offset(polytope, i);
+      if (bound - normal.dot(near) <= reach_) problem_.faces.push_back({normal, bound});
     }
     finish(joint, coefficients, begin);
     return true;
@@ -166,6 +170,7 @@ class FaceWriter {
   const Request& request_;
   const Plan& plan_;
   const Units& units_;
+  const double reach_;
   SplineProblem& problem_;
 };
 
@@ -177,7 +182,7 @@ double natural_jerk(const Plan& plan, const Limits& limits) {
 }
 
 bool make_problem(const Request& request, const Plan& plan, bool scale, double time_weight,
-                  SplineProblem& problem, Units& units) {
+                  double reach, SplineProblem& problem, Units& units) {
   const std::size_t m = plan.durations_s.size();
   const Limits& limits = request.limits;
   units.origin_map = request.start.position;
@@ -216,7 +221,7 @@ bool make_problem(const Request& request, const Plan& plan, bool scale, double t
     problem.start_rate = rate(problem.joints.front());
     problem.goal_rate = rate(problem.joints.back());
   }
-  FaceWriter faces(request, plan, units, problem);
+  FaceWriter faces(request, plan, units, reach, problem);
   bool inside = true;
   for (int k = 0; k < int(m); ++k) {
     const bool enters = k > 0 && plan.polytopes[std::size_t(k)] != plan.polytopes[std::size_t(k) - 1];

@@ -299,7 +299,7 @@ double SplineSolver::predict() {
 
 // The predictor's second-order terms and the centring sigma. @return the step to the boundary
 double SplineSolver::correct(double sigma) {
-  const double keep = 1.0 - sigma;
+  const double keep = 1.0;
   const double target = sigma * gap_ / degree_;
   for (std::size_t i = 0; i < rhs_.size(); ++i) rhs_[i] = -keep * dual_[i];
   rhs_eta_ = -keep * dual_eta_;
