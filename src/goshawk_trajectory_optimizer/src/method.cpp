@@ -10,8 +10,7 @@ namespace goshawk::trajectory_optimizer {
 namespace {
 
 constexpr double kAllFaces = std::numeric_limits<double>::infinity();
-constexpr double kReach = 0.6;        // of faces at first, in ways of a mean piece at v_max
-constexpr double kCoarseGap = 1e-2;   // relative, of all passes but the last
+constexpr double kCoarseGap = 1e-2;  // relative, of all passes but the last
 constexpr double kFineGap = 1e-3;
 
 // The largest speed and acceleration of a spline's hull, in units of the limits, piece by piece.
@@ -48,9 +47,17 @@ Result<Solution> TrajectoryOptimizer::Method::scale(const Request& request) {
   if (request.rests()) {
     refine(request, plan);
   } else {
-    constexpr std::array<Lead, 11> kLeads{{{0.25, 1.0}, {0.1, 0.5}, {0.1, 1.6}, {0.02, 1.0},
-                                           {0.05, 0.25}, {0.05, 0.7}, {0.03, 0.12}, {0.02, 0.05},
-                                           {0.05, 3.0}, {0.01, 0.02}, {0.01, 1.0}}};
+    constexpr std::array<Lead, 11> kLeads{{{0.25, 1.0},
+                                           {0.1, 0.5},
+                                           {0.1, 1.6},
+                                           {0.02, 1.0},
+                                           {0.05, 0.25},
+                                           {0.05, 0.7},
+                                           {0.03, 0.12},
+                                           {0.02, 0.05},
+                                           {0.05, 3.0},
+                                           {0.01, 0.02},
+                                           {0.01, 1.0}}};
     for (const Lead& lead : kLeads) {
       plan = cut_trapezoid(request, config_, lead);
       refine(request, plan);
@@ -66,16 +73,16 @@ Result<Solution> TrajectoryOptimizer::Method::scale(const Request& request) {
 void TrajectoryOptimizer::Method::refine(const Request& request, Plan& plan) {
   const bool rests = request.rests();
   const int passes = 1 + config_.refinement_passes + (rests ? 0 : 4);
-  double reach = kReach;
+  double reach_m = corner_reach_m(plan, request.limits);
   for (int pass = 0; pass < passes; ++pass) {
     const double gap = pass < config_.refinement_passes ? kCoarseGap : kFineGap;
     const Plan guess = plan;
     double kappa = 1.0;
-    if (!solve_scale(request, plan, reach, gap, kappa)) return;
-    if (!consider(request, plan) && reach < kAllFaces) {  // through a face that was left out
-      reach = kAllFaces;
+    if (!solve_scale(request, plan, reach_m, gap, kappa)) return;
+    if (!consider(request, plan) && reach_m < kAllFaces) {  // through a face that was left out
+      reach_m = kAllFaces;
       plan = guess;
-      if (!solve_scale(request, plan, reach, gap, kappa)) return;
+      if (!solve_scale(request, plan, reach_m, gap, kappa)) return;
       consider(request, plan);
     }
     const bool certified = best_.has_value();
@@ -126,9 +133,10 @@ void TrajectoryOptimizer::Method::try_longer(const Request& request, const Plan&
   }
 }
 
-bool TrajectoryOptimizer::Method::solve_scale(const Request& request, Plan& plan, double reach,
+bool TrajectoryOptimizer::Method::solve_scale(const Request& request, Plan& plan, double reach_m,
                                               double gap, double& kappa) {
-  if (!make_problem(request, plan, true, config_.time_weight, reach, problem_, units_)) return false;
+  if (!make_problem(request, plan, true, config_.time_weight, reach_m, problem_, units_))
+    return false;
   last_ = solver_.solve(problem_, {config_.max_iterations, gap, 1e-8, 1e-3});
   iterations_ += last_.iterations;
   ++solves_;
@@ -179,8 +187,8 @@ bool TrajectoryOptimizer::Method::consider(const Request& request, const Plan& p
                       jerk_cost / (plan.duration_s() * natural * natural);
   if (best_ && best_cost_ <= cost) return true;
   best_cost_ = cost;
-  best_ = Solution{std::move(trajectory), certificate, 0, 0, int(plan.durations_s.size()),
-                   jerk_cost};
+  best_ =
+      Solution{std::move(trajectory), certificate, 0, 0, int(plan.durations_s.size()), jerk_cost};
   return true;
 }
 
@@ -199,22 +207,26 @@ Error TrajectoryOptimizer::Method::failure(const Request& request) const {
   if (config_.method == "thesis" && last_.status == Status::infeasible) {
     return fail(ErrorCode::trajectory_infeasible,
                 "one quintic a segment with trapezoid durations cannot stay in the corridor and "
-                "its limits: use method scale or fixed" + std::string(numbers));
+                "its limits: use method scale or fixed" +
+                    std::string(numbers));
   }
   if (!request.rests() && last_.status != Status::numerical_trouble) {
     return fail(ErrorCode::start_infeasible,
                 "from a speed of " + std::to_string(request.start.velocity.norm()) +
                     " m/s no trajectory within the limits stays in the corridor: replan from "
-                    "farther ahead, widen the corridor or raise the acceleration limit" + numbers);
+                    "farther ahead, widen the corridor or raise the acceleration limit" +
+                    numbers);
   }
   if (last_.status == Status::infeasible) {
     return fail(ErrorCode::trajectory_infeasible,
                 "no trajectory within the limits stays in the corridor: let consecutive polytopes "
-                "overlap more or raise max_stretch" + std::string(numbers));
+                "overlap more or raise max_stretch" +
+                    std::string(numbers));
   }
   return fail(ErrorCode::solver_failed,
               "the solver stopped without an answer: look for very thin or very small polytopes, "
-              "or raise max_iterations" + std::string(numbers));
+              "or raise max_iterations" +
+                  std::string(numbers));
 }
 
 }  // namespace goshawk::trajectory_optimizer

@@ -52,8 +52,7 @@ Instance random_instance(Random& random, bool scale, double stretch) {
   i.plan = cut_trapezoid(i.request(), config);
   for (double& duration : i.plan.durations_s) duration *= stretch * random.uniform(0.8, 1.25);
   make_problem(i.request(), i.plan, scale, std::pow(10.0, random.uniform(-2.0, 2.0)), HUGE_VAL,
-               i.problem,
-               i.units);
+               i.problem, i.units);
   return i;
 }
 
