@@ -12,6 +12,7 @@ namespace {
 constexpr double kAllFaces = std::numeric_limits<double>::infinity();
 constexpr double kCoarseGap = 1e-2;  // relative, of all passes but the last
 constexpr double kFineGap = 1e-3;
+constexpr std::array<double, 5> kEndSlack{2e-2, 2e-3, 2e-5, 0.0, 0.0};  // pass by pass
 
 // The largest speed and acceleration of a spline's hull, in units of the limits, piece by piece.
 struct Usage {
@@ -75,14 +76,15 @@ void TrajectoryOptimizer::Method::refine(const Request& request, Plan& plan) {
   const int passes = 1 + config_.refinement_passes + (rests ? 0 : 4);
   double reach_m = corner_reach_m(plan, request.limits);
   for (int pass = 0; pass < passes; ++pass) {
+    const double slack = rests ? 0.0 : kEndSlack[std::min<std::size_t>(std::size_t(pass), 4)];
     const double gap = pass < config_.refinement_passes ? kCoarseGap : kFineGap;
     const Plan guess = plan;
     double kappa = 1.0;
-    if (!solve_scale(request, plan, reach_m, gap, kappa)) return;
+    if (!solve_scale(request, plan, reach_m, gap, slack, kappa)) return;
     if (!consider(request, plan) && reach_m < kAllFaces) {  // through a face that was left out
       reach_m = kAllFaces;
       plan = guess;
-      if (!solve_scale(request, plan, reach_m, gap, kappa)) return;
+      if (!solve_scale(request, plan, reach_m, gap, slack, kappa)) return;
       consider(request, plan);
     }
     const bool certified = best_.has_value();
@@ -134,8 +136,10 @@ void TrajectoryOptimizer::Method::try_longer(const Request& request, const Plan&
 }
 
 bool TrajectoryOptimizer::Method::solve_scale(const Request& request, Plan& plan, double reach_m,
-                                              double gap, double& kappa) {
-  if (!make_problem(request, plan, true, config_.time_weight, reach_m, problem_, units_))
+                                              double gap,
+                                              double end_slack, double& kappa) {
+  if (!make_problem(request, plan, true, config_.time_weight, reach_m, problem_, units_,
+                    end_slack))
     return false;
   last_ = solver_.solve(problem_, {config_.max_iterations, gap, 1e-8, 1e-3});
   iterations_ += last_.iterations;

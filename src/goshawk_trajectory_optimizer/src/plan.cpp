@@ -194,7 +194,7 @@ double natural_jerk(const Plan& plan, const Limits& limits) {
 }
 
 bool make_problem(const Request& request, const Plan& plan, bool scale, double time_weight,
-                  double reach_m, SplineProblem& problem, Units& units) {
+                  double reach_m, SplineProblem& problem, Units& units, double end_slack) {
   const std::size_t m = plan.durations_s.size();
   const Limits& limits = request.limits;
   units.origin_map = request.start.position;
@@ -217,7 +217,7 @@ bool make_problem(const Request& request, const Plan& plan, bool scale, double t
   problem.a_max.assign(m, tighten * limits.a_max_m_s2 * units.time_s / limits.v_max_m_s);
   // A start or goal may lie on a limit: half of the certificate's tolerance gives it an interior.
   const auto loosen = [&](std::size_t piece) {
-    problem.v_max[piece] += 0.5e-6 / limits.v_max_m_s;
+    problem.v_max[piece] += 0.5e-6 / limits.v_max_m_s + end_slack;
     problem.a_max[piece] += 0.5e-6 * units.time_s / limits.v_max_m_s;
   };
   if (is_moving(request.start)) loosen(0);
