@@ -4,8 +4,12 @@ namespace goshawk::trajectory_optimizer {
 namespace {
 
 // A map and its mirror image in time, which swaps the joints and the sign of odd derivatives.
-PointMap first_only(double p, double v, double a) { return {Vec3(p, v, a), Vec3::Zero()}; }
-PointMap second_only(double p, double v, double a) { return {Vec3::Zero(), Vec3(p, v, a)}; }
+PointMap first_only(double p, double v, double a) {
+  return {Vec3(p, v, a), Vec3::Zero()};
+}
+PointMap second_only(double p, double v, double a) {
+  return {Vec3::Zero(), Vec3(p, v, a)};
+}
 
 PointMap slope(const PointMap& from, const PointMap& to, double rate) {
   return {rate * (to.from_first - from.from_first), rate * (to.from_second - from.from_second)};
@@ -15,23 +19,34 @@ PointMap slope(const PointMap& from, const PointMap& to, double rate) {
 
 PointMap position_point(int j, double T) {
   switch (j) {
-    case 0: return first_only(1.0, 0.0, 0.0);
-    case 1: return first_only(1.0, T / 5.0, 0.0);
-    case 2: return first_only(1.0, 2.0 * T / 5.0, T * T / 20.0);
-    case 3: return second_only(1.0, -2.0 * T / 5.0, T * T / 20.0);
-    case 4: return second_only(1.0, -T / 5.0, 0.0);
-    default: return second_only(1.0, 0.0, 0.0);
+    case 0:
+      return first_only(1.0, 0.0, 0.0);
+    case 1:
+      return first_only(1.0, T / 5.0, 0.0);
+    case 2:
+      return first_only(1.0, 2.0 * T / 5.0, T * T / 20.0);
+    case 3:
+      return second_only(1.0, -2.0 * T / 5.0, T * T / 20.0);
+    case 4:
+      return second_only(1.0, -T / 5.0, 0.0);
+    default:
+      return second_only(1.0, 0.0, 0.0);
   }
 }
 
 PointMap velocity_point(int j, double T) {
   // The exact forms where the positions cancel; slope() would leave rounding behind.
   switch (j) {
-    case 0: return first_only(0.0, 1.0, 0.0);
-    case 1: return first_only(0.0, 1.0, T / 4.0);
-    case 3: return second_only(0.0, 1.0, -T / 4.0);
-    case 4: return second_only(0.0, 1.0, 0.0);
-    default: return slope(position_point(2, T), position_point(3, T), 5.0 / T);
+    case 0:
+      return first_only(0.0, 1.0, 0.0);
+    case 1:
+      return first_only(0.0, 1.0, T / 4.0);
+    case 3:
+      return second_only(0.0, 1.0, -T / 4.0);
+    case 4:
+      return second_only(0.0, 1.0, 0.0);
+    default:
+      return slope(position_point(2, T), position_point(3, T), 5.0 / T);
   }
 }
 

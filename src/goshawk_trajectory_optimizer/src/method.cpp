@@ -4,9 +4,15 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 namespace goshawk::trajectory_optimizer {
 namespace {
+
+constexpr double kAllFaces = std::numeric_limits<double>::infinity();
+constexpr double kCoarseGap = 1e-2;  // relative, of all passes but the last
+constexpr double kFineGap = 1e-3;
+constexpr std::array<double, 5> kEndSlack{2e-2, 2e-3, 2e-5, 0.0, 0.0};  // pass by pass
 
 // The largest speed and acceleration of a spline's hull, in units of the limits, piece by piece.
 struct Usage {
@@ -42,9 +48,17 @@ Result<Solution> TrajectoryOptimizer::Method::scale(const Request& request) {
   if (request.rests()) {
     refine(request, plan);
   } else {
-    constexpr std::array<Lead, 11> kLeads{{{0.25, 1.0}, {0.1, 0.5}, {0.1, 1.6}, {0.02, 1.0},
-                                           {0.05, 0.25}, {0.05, 0.7}, {0.03, 0.12}, {0.02, 0.05},
-                                           {0.05, 3.0}, {0.01, 0.02}, {0.01, 1.0}}};
+    constexpr std::array<Lead, 11> kLeads{{{0.25, 1.0},
+                                           {0.1, 0.5},
+                                           {0.1, 1.6},
+                                           {0.02, 1.0},
+                                           {0.05, 0.25},
+                                           {0.05, 0.7},
+                                           {0.03, 0.12},
+                                           {0.02, 0.05},
+                                           {0.05, 3.0},
+                                           {0.01, 0.02},
+                                           {0.01, 1.0}}};
     for (const Lead& lead : kLeads) {
       plan = cut_trapezoid(request, config_, lead);
       refine(request, plan);
@@ -60,10 +74,20 @@ Result<Solution> TrajectoryOptimizer::Method::scale(const Request& request) {
 void TrajectoryOptimizer::Method::refine(const Request& request, Plan& plan) {
   const bool rests = request.rests();
   const int passes = 1 + config_.refinement_passes + (rests ? 0 : 4);
+  double reach_m = corner_reach_m(plan, request.limits);
   for (int pass = 0; pass < passes; ++pass) {
+    const double slack = rests ? 0.0 : kEndSlack[std::min<std::size_t>(std::size_t(pass), 4)];
+    const double gap = pass < config_.refinement_passes ? kCoarseGap : kFineGap;
+    const Plan guess = plan;
     double kappa = 1.0;
-    if (!solve_scale(request, plan, kappa)) return;
-    const bool certified = consider(request, plan);
+    if (!solve_scale(request, plan, reach_m, gap, slack, kappa)) return;
+    if (!consider(request, plan) && reach_m < kAllFaces) {  // through a face that was left out
+      reach_m = kAllFaces;
+      plan = guess;
+      if (!solve_scale(request, plan, reach_m, gap, slack, kappa)) return;
+      consider(request, plan);
+    }
+    const bool certified = best_.has_value();
     // A moving end was linearised at kappa = 1: done when it has come to be so.
     const bool settled = certified && (rests || std::abs(kappa - 1.0) < 1e-3);
     if (pass >= config_.refinement_passes && settled) return;
@@ -111,10 +135,13 @@ void TrajectoryOptimizer::Method::try_longer(const Request& request, const Plan&
   }
 }
 
-bool TrajectoryOptimizer::Method::solve_scale(const Request& request, Plan& plan,
-                                              double& kappa) {
-  if (!make_problem(request, plan, true, config_.time_weight, problem_, units_)) return false;
-  last_ = solver_.solve(problem_, {config_.max_iterations, 1e-4, 1e-8, 1e-4});
+bool TrajectoryOptimizer::Method::solve_scale(const Request& request, Plan& plan, double reach_m,
+                                              double gap,
+                                              double end_slack, double& kappa) {
+  if (!make_problem(request, plan, true, config_.time_weight, reach_m, problem_, units_,
+                    end_slack))
+    return false;
+  last_ = solver_.solve(problem_, {config_.max_iterations, gap, 1e-8, 1e-3});
   iterations_ += last_.iterations;
   ++solves_;
   if (last_.status != SplineSolver::Status::solved || !(last_.eta > 0.0)) return false;
@@ -141,7 +168,7 @@ bool TrajectoryOptimizer::Method::solve_scale(const Request& request, Plan& plan
 bool TrajectoryOptimizer::Method::solve_fixed(const Request& request, Plan& plan) {
   ++solves_;
   last_ = {};
-  if (!make_problem(request, plan, false, 1.0, problem_, units_)) {
+  if (!make_problem(request, plan, false, 1.0, kAllFaces, problem_, units_)) {
     last_.status = SplineSolver::Status::infeasible;
     return false;
   }
@@ -164,8 +191,8 @@ bool TrajectoryOptimizer::Method::consider(const Request& request, const Plan& p
                       jerk_cost / (plan.duration_s() * natural * natural);
   if (best_ && best_cost_ <= cost) return true;
   best_cost_ = cost;
-  best_ = Solution{std::move(trajectory), certificate, 0, 0, int(plan.durations_s.size()),
-                   jerk_cost};
+  best_ =
+      Solution{std::move(trajectory), certificate, 0, 0, int(plan.durations_s.size()), jerk_cost};
   return true;
 }
 
@@ -184,22 +211,26 @@ Error TrajectoryOptimizer::Method::failure(const Request& request) const {
   if (config_.method == "thesis" && last_.status == Status::infeasible) {
     return fail(ErrorCode::trajectory_infeasible,
                 "one quintic a segment with trapezoid durations cannot stay in the corridor and "
-                "its limits: use method scale or fixed" + std::string(numbers));
+                "its limits: use method scale or fixed" +
+                    std::string(numbers));
   }
   if (!request.rests() && last_.status != Status::numerical_trouble) {
     return fail(ErrorCode::start_infeasible,
                 "from a speed of " + std::to_string(request.start.velocity.norm()) +
                     " m/s no trajectory within the limits stays in the corridor: replan from "
-                    "farther ahead, widen the corridor or raise the acceleration limit" + numbers);
+                    "farther ahead, widen the corridor or raise the acceleration limit" +
+                    numbers);
   }
   if (last_.status == Status::infeasible) {
     return fail(ErrorCode::trajectory_infeasible,
                 "no trajectory within the limits stays in the corridor: let consecutive polytopes "
-                "overlap more or raise max_stretch" + std::string(numbers));
+                "overlap more or raise max_stretch" +
+                    std::string(numbers));
   }
   return fail(ErrorCode::solver_failed,
               "the solver stopped without an answer: look for very thin or very small polytopes, "
-              "or raise max_iterations" + std::string(numbers));
+              "or raise max_iterations" +
+                  std::string(numbers));
 }
 
 }  // namespace goshawk::trajectory_optimizer

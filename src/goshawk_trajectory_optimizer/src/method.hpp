@@ -23,7 +23,9 @@ class TrajectoryOptimizer::Method {
 
   void refine(const Request& request, Plan& plan);
   /// Time and shape together, once: the plan becomes the solution and kappa its time scale.
-  bool solve_scale(const Request& request, Plan& plan, double& kappa);
+  /// @param gap relative, where to stop
+  bool solve_scale(const Request& request, Plan& plan, double reach_m, double gap,
+                   double end_slack, double& kappa);
   /// Least jerk with the plan's durations.
   bool solve_fixed(const Request& request, Plan& plan);
   /// Fixed durations, longer and longer, until a plan is certified.

@@ -9,8 +9,10 @@
 namespace goshawk::trajectory_optimizer {
 namespace {
 
-constexpr double kLeastLength = 1e-6;   // [m] of a path, for the estimate of its duration
-constexpr double kShortest = 0.01;      // of a mean piece: shorter ones cost accuracy
+constexpr double kLeastLength = 1e-6;  // [m] of a path, for the estimate of its duration
+constexpr double kShortest = 0.01;     // of a mean piece: shorter ones cost accuracy
+
+constexpr double kCorner = 0.3;  // of v^2 / a: how far a corner is cut, generously
 
 double speed_along(const FlatState& state, const Vec3& from, const Vec3& to) {
   const Vec3 step = to - from;
@@ -31,11 +33,15 @@ double path_length(const std::vector<Vec3>& waypoints) {
   return length;
 }
 
-bool is_moving(const FlatState& s) { return !s.velocity.isZero(0.0) || !s.acceleration.isZero(0.0); }
+bool is_moving(const FlatState& s) {
+  return !s.velocity.isZero(0.0) || !s.acceleration.isZero(0.0);
+}
 
 }  // namespace
 
-bool Request::rests() const { return !is_moving(start) && !is_moving(goal); }
+bool Request::rests() const {
+  return !is_moving(start) && !is_moving(goal);
+}
 
 double Plan::duration_s() const {
   return std::accumulate(durations_s.begin(), durations_s.end(), 0.0);
@@ -51,8 +57,8 @@ Plan cut_trapezoid(const Request& request, const Config& config, const Lead& lea
   plan.stays = request.rests() && path_length(waypoints) <= kLeastLength;
   plan.reference_s = plan.stays ? config.piece_duration_s : profile.duration_s();
   plan.reference_s = std::max(
-      plan.reference_s, rest_to_rest_duration_s(kLeastLength, request.limits.v_max_m_s,
-                                                request.limits.a_max_m_s2));
+      plan.reference_s,
+      rest_to_rest_duration_s(kLeastLength, request.limits.v_max_m_s, request.limits.a_max_m_s2));
   const double longest = std::min(config.piece_duration_s, plan.reference_s / config.min_pieces);
   // Of a piece that begins or ends at t.
   const auto cap = [&](double t) {
@@ -91,8 +97,8 @@ Plan thesis_plan(const Request& request) {
     const double length = std::max((waypoints[k + 1] - waypoints[k]).norm(), kLeastLength);
     FlatState end;
     end.position = waypoints[k + 1];
-    append(plan, rest_to_rest_duration_s(length, request.limits.v_max_m_s,
-                                         request.limits.a_max_m_s2),
+    append(plan,
+           rest_to_rest_duration_s(length, request.limits.v_max_m_s, request.limits.a_max_m_s2),
            int(k), end);
   }
   plan.joints.back() = request.goal;
@@ -113,8 +119,9 @@ Joint to_units(const FlatState& state, const Units& units) {
 // Adds the faces that control point j of piece k must stay behind.
 class FaceWriter {
  public:
-  FaceWriter(const Request& request, const Plan& plan, const Units& units, SplineProblem& problem)
-      : request_(request), plan_(plan), units_(units), problem_(problem) {}
+  FaceWriter(const Request& request, const Plan& plan, const Units& units, double reach_m,
+             SplineProblem& problem)
+      : request_(request), plan_(plan), units_(units), reach_m_(reach_m), problem_(problem) {}
 
   // @return false where the point is constant and outside
   bool add(int piece, int j) {
@@ -126,8 +133,12 @@ class FaceWriter {
     const bool end = joint == 0 || joint == problem_.pieces();
     if (end) return add_at_end(joint, coefficients, polytope);
     const int begin = int(problem_.faces.size());
+    const Vec3 near = problem_.joints[std::size_t(joint)] * coefficients;
     for (int i = 0; i < polytope.faces(); ++i) {
-      problem_.faces.push_back({polytope.A.row(i).transpose(), offset(polytope, i)});
+      const Vec3 normal = polytope.A.row(i).transpose();
+      const double bound = offset(polytope, i);
+      if ((bound - normal.dot(near)) * units_.length_m <= reach_m_)
+        problem_.faces.push_back({normal, bound});
     }
     finish(joint, coefficients, begin);
     return true;
@@ -166,10 +177,16 @@ class FaceWriter {
   const Request& request_;
   const Plan& plan_;
   const Units& units_;
+  const double reach_m_;
   SplineProblem& problem_;
 };
 
 }  // namespace
+
+double corner_reach_m(const Plan& plan, const Limits& limits) {
+  const double v = limits.v_max_m_s;
+  return kCorner * std::min(v * v / limits.a_max_m_s2, 0.5 * v * plan.reference_s);
+}
 
 double natural_jerk(const Plan& plan, const Limits& limits) {
   const double ramp_s = std::min(limits.v_max_m_s / limits.a_max_m_s2, 0.5 * plan.reference_s);
@@ -177,7 +194,7 @@ double natural_jerk(const Plan& plan, const Limits& limits) {
 }
 
 bool make_problem(const Request& request, const Plan& plan, bool scale, double time_weight,
-                  SplineProblem& problem, Units& units) {
+                  double reach_m, SplineProblem& problem, Units& units, double end_slack) {
   const std::size_t m = plan.durations_s.size();
   const Limits& limits = request.limits;
   units.origin_map = request.start.position;
@@ -200,7 +217,7 @@ bool make_problem(const Request& request, const Plan& plan, bool scale, double t
   problem.a_max.assign(m, tighten * limits.a_max_m_s2 * units.time_s / limits.v_max_m_s);
   // A start or goal may lie on a limit: half of the certificate's tolerance gives it an interior.
   const auto loosen = [&](std::size_t piece) {
-    problem.v_max[piece] += 0.5e-6 / limits.v_max_m_s;
+    problem.v_max[piece] += 0.5e-6 / limits.v_max_m_s + end_slack;
     problem.a_max[piece] += 0.5e-6 * units.time_s / limits.v_max_m_s;
   };
   if (is_moving(request.start)) loosen(0);
@@ -216,10 +233,11 @@ bool make_problem(const Request& request, const Plan& plan, bool scale, double t
     problem.start_rate = rate(problem.joints.front());
     problem.goal_rate = rate(problem.joints.back());
   }
-  FaceWriter faces(request, plan, units, problem);
+  FaceWriter faces(request, plan, units, reach_m, problem);
   bool inside = true;
   for (int k = 0; k < int(m); ++k) {
-    const bool enters = k > 0 && plan.polytopes[std::size_t(k)] != plan.polytopes[std::size_t(k) - 1];
+    const bool enters =
+        k > 0 && plan.polytopes[std::size_t(k)] != plan.polytopes[std::size_t(k) - 1];
     for (int j = enters ? 0 : 1; j <= (k + 1 < int(m) ? 5 : 4); ++j) {
       inside = faces.add(k, j) && inside;
     }

@@ -7,8 +7,8 @@
 namespace goshawk::trajectory_optimizer {
 namespace {
 
-constexpr double kPlace = 1e-6;       // [m] how well the ends must agree with the corridor
-constexpr double kFarthest = 1e6;     // [m] beyond, a double cannot resolve the certificate
+constexpr double kPlace = 1e-6;         // [m] how well the ends must agree with the corridor
+constexpr double kFarthest = 1e6;       // [m] beyond, a double cannot resolve the certificate
 constexpr double kLeastOverlap = 1e-5;  // [m] less is no room for a joint
 
 std::string number(double value) {
@@ -34,10 +34,12 @@ Status check_limits(const Limits& limits) {
 
 Status check_places(const Corridor& corridor) {
   for (std::size_t k = 0; k < corridor.waypoints_map.size(); ++k) {
-    if (!(corridor.waypoints_map[k].cwiseAbs().maxCoeff() <= kFarthest)) {
+    const Vec3& waypoint = corridor.waypoints_map[k];
+    // Not by maxCoeff() alone, which may pass over a NaN.
+    if (!is_finite(waypoint) || waypoint.cwiseAbs().maxCoeff() > kFarthest) {
       return fail(ErrorCode::invalid_input,
-                  "waypoint " + std::to_string(k) + " " + to_text(corridor.waypoints_map[k]) +
-                      " is farther than 1000 km from the origin of the map: use a nearer origin");
+                  "waypoint " + std::to_string(k) + " " + to_text(waypoint) +
+                      " is not finite or farther than 1000 km from the origin of the map");
     }
   }
   return success();
@@ -46,15 +48,15 @@ Status check_places(const Corridor& corridor) {
 Status check_overlaps(const Corridor& corridor) {
   for (std::size_t k = 0; k < corridor.overlaps.size(); ++k) {
     const Ball& ball = corridor.overlaps[k];
-    const std::string pair =
-        "polytopes " + std::to_string(k) + " and " + std::to_string(k + 1);
+    const std::string pair = "polytopes " + std::to_string(k) + " and " + std::to_string(k + 1);
     if (!(ball.radius_m >= kLeastOverlap)) {
       return fail(ErrorCode::corridor_disjoint,
                   pair + " share a ball of radius " + number(ball.radius_m) +
                       " m: a joint needs room, let them overlap more");
     }
     for (const std::size_t side : {k, k + 1}) {
-      if (!(corridor.polytopes[side].violation(ball.center_map) <= -0.5 * kLeastOverlap)) {
+      if (!is_finite(ball.center_map) ||
+          !(corridor.polytopes[side].violation(ball.center_map) <= -0.5 * kLeastOverlap)) {
         return fail(ErrorCode::corridor_disjoint,
                     "the overlap stated for " + pair + " at " + to_text(ball.center_map) +
                         " is not inside polytope " + std::to_string(side));
@@ -73,8 +75,7 @@ Status check_overlaps(const Corridor& corridor) {
 
 Status check_end(const char* name, ErrorCode code, const FlatState& state, const Vec3& waypoint,
                  const Limits& limits) {
-  if (!is_finite(state.position) || !is_finite(state.velocity) ||
-      !is_finite(state.acceleration)) {
+  if (!is_finite(state.position) || !is_finite(state.velocity) || !is_finite(state.acceleration)) {
     return fail(ErrorCode::invalid_input, std::string("the ") + name + " state is not finite");
   }
   if (!((state.position - waypoint).norm() <= kPlace)) {

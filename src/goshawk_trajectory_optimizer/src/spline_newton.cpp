@@ -120,8 +120,7 @@ bool SplineSolver::linearise_cones(ConeSet<D, R>& set) {
   return inside;
 }
 
-void SplineSolver::scatter(const LimitPoint& point, const Vec3& y,
-                           std::vector<double>& to) const {
+void SplineSolver::scatter(const LimitPoint& point, const Vec3& y, std::vector<double>& to) const {
   joint_of(to, point.joint) += y * point.map.from_first.transpose();
   if (point.second) joint_of(to, point.joint + 1) += y * point.map.from_second.transpose();
 }
@@ -165,8 +164,8 @@ void SplineSolver::add_hessian(const LimitPoint& point, const Hessian& h) {
     for (int j = 0; j < 3; ++j) {
       if (point.map.from_first[j] == 0.0) continue;
       for (int i = 0; i < 3; ++i) {
-        add_block(panel, kBlock + 3 * i, 3 * j,
-                  point.map.from_second[i] * point.map.from_first[j], h.yy);
+        add_block(panel, kBlock + 3 * i, 3 * j, point.map.from_second[i] * point.map.from_first[j],
+                  h.yy);
       }
     }
   }
@@ -232,7 +231,8 @@ void SplineSolver::fold_ends() {
       const auto& column = panel.column[std::size_t(c)];
       corner += 2.0 * rate[c] * column[ArrowCholesky::kBorder];
       corner += rate[c] * rate[c] * column[std::size_t(c)];
-      for (int r = c + 1; r < kBlock; ++r) corner += 2.0 * rate[c] * rate[r] * column[std::size_t(r)];
+      for (int r = c + 1; r < kBlock; ++r)
+        corner += 2.0 * rate[c] * rate[r] * column[std::size_t(r)];
     }
   }
   const auto below = [&](int k, int r, int c) {
@@ -297,29 +297,29 @@ double SplineSolver::predict() {
   return step;
 }
 
-// The predictor's second-order terms and the centring sigma. @return the step to the boundary
+// The predictor's second-order terms and the centring sigma; the residuals enter whole, not
+// (1 - sigma) of them: a full step then ends them. @return the step to the boundary
 double SplineSolver::correct(double sigma) {
-  const double keep = 1.0 - sigma;
   const double target = sigma * gap_ / degree_;
-  for (std::size_t i = 0; i < rhs_.size(); ++i) rhs_[i] = -keep * dual_[i];
-  rhs_eta_ = -keep * dual_eta_;
+  for (std::size_t i = 0; i < rhs_.size(); ++i) rhs_[i] = -dual_[i];
+  rhs_eta_ = -dual_eta_;
   for (const FacePoint& point : face_points_) {
     Vec3 rhs = Vec3::Zero();
     for (int i = point.begin; i < point.end; ++i) {
       FaceRow& row = rows_[std::size_t(i)];
       const double product = target - row.s * row.z - row.ds * row.dz;  // b_s
-      row.dz = -(keep * row.residual * row.z + product) * row.inverse_s;  // W^-2 q for now
+      row.dz = -(row.residual * row.z + product) * row.inverse_s;       // W^-2 q for now
       rhs += row.dz * faces_[std::size_t(i)].normal;
     }
     joint_of(rhs_, point.joint) += rhs * point.map.transpose();
   }
-  for_each_set([&](auto& set) { correct_cones(set, keep, target); });
+  for_each_set([&](auto& set) { correct_cones(set, target); });
   solve_newton();
-  return final_direction(keep);
+  return final_direction();
 }
 
 template <int D, bool R>
-void SplineSolver::correct_cones(ConeSet<D, R>& set, double keep, double target) {
+void SplineSolver::correct_cones(ConeSet<D, R>& set, double target) {
   std::size_t next = 0;
   for (const LimitPoint& point : set.points) {
     Vec3 rhs = Vec3::Zero();
@@ -329,8 +329,7 @@ void SplineSolver::correct_cones(ConeSet<D, R>& set, double keep, double target)
           cone.jordan(cone.lambda + cone.scaled_dz, cone.scaled_dz) -
           cone.jordan(cone.lambda, cone.lambda);
       product[0] += target;
-      cone.dz = -cone.unscale_twice(keep * cone.residual +
-                                    cone.scale(cone.divide_by_lambda(product)));
+      cone.dz = -cone.unscale_twice(cone.residual + cone.scale(cone.divide_by_lambda(product)));
       const auto pull = cone.transposed(cone.dz);
       component<D>(rhs, c) -= pull.y;
       rhs_eta_ -= pull.eta;
@@ -339,7 +338,7 @@ void SplineSolver::correct_cones(ConeSet<D, R>& set, double keep, double target)
   }
 }
 
-double SplineSolver::final_direction(double keep) {
+double SplineSolver::final_direction() {
   double largest = 1e-300;
   for (const FacePoint& point : face_points_) {
     const Vec3 dy = joint_of(dx_, point.joint) * point.map;
@@ -347,7 +346,7 @@ double SplineSolver::final_direction(double keep) {
       FaceRow& row = rows_[std::size_t(i)];
       const double along = faces_[std::size_t(i)].normal.dot(dy);
       row.dz = row.z * row.inverse_s * along - row.dz;
-      row.ds = -keep * row.residual - along;
+      row.ds = -row.residual - along;
       largest = std::max({largest, -row.ds * row.inverse_s, -row.dz / row.z});
     }
   }
@@ -356,7 +355,7 @@ double SplineSolver::final_direction(double keep) {
     for_each_cone(set, dx_, [&](auto& cone, const auto& dy) {
       const auto move = cone.direction_of(dy, deta_);
       cone.dz = -cone.unscale_twice(move) - cone.dz;
-      cone.ds = move - keep * cone.residual;
+      cone.ds = move - cone.residual;
       step = std::min(step, cone.step_to_boundary());
     });
   });

@@ -14,8 +14,7 @@ constexpr double kStepFraction = 0.99;  // of the way to the boundary
 
 }  // namespace
 
-SplineSolver::Outcome SplineSolver::solve(const SplineProblem& problem,
-                                          const Settings& settings) {
+SplineSolver::Outcome SplineSolver::solve(const SplineProblem& problem, const Settings& settings) {
   set_up(problem);
   Outcome out;
   if (constant_point_violated_) {
@@ -46,7 +45,7 @@ SplineSolver::Outcome SplineSolver::solve(const SplineProblem& problem,
     }
     if (!inside || !factor()) break;
     const double reach = std::min(1.0, predict());
-    const double sigma = (1.0 - reach) * (1.0 - reach) * (1.0 - reach);
+    const double sigma = (1.0 - reach) * (1.0 - reach);
     const double step = std::min(1.0, kStepFraction * correct(sigma));
     if (!(step > 1e-8)) break;
     apply_step(step);
@@ -103,8 +102,7 @@ void SplineSolver::add_limits(const SplineProblem& problem) {
 
 // A point that no unknown moves is checked once and makes no cone: the method needs an interior,
 // and a constant may lie on its limit.
-void SplineSolver::add_limit(const SplineProblem& problem, bool velocity,
-                             const LimitPoint& point) {
+void SplineSolver::add_limit(const SplineProblem& problem, bool velocity, const LimitPoint& point) {
   const bool per_axis = problem.norm == LimitNorm::per_axis;
   if (!touches_unknown(point)) {
     const Vec3 y = value(point, x_);

@@ -28,8 +28,7 @@ Eigen::Matrix<double, D, 1> component(const Vec3& y, int c) {
 }
 
 template <int D, bool R, typename Visit>
-void SplineSolver::for_each_cone(ConeSet<D, R>& set, const std::vector<double>& x,
-                                 Visit&& visit) {
+void SplineSolver::for_each_cone(ConeSet<D, R>& set, const std::vector<double>& x, Visit&& visit) {
   std::size_t next = 0;
   for (const LimitPoint& point : set.points) {
     const Vec3 y = value(point, x);

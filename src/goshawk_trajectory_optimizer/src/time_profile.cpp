@@ -20,8 +20,8 @@ double corner_speed(const Vec3& before, const Vec3& after, double length, double
 
 }  // namespace
 
-TimeProfile::TimeProfile(std::span<const Vec3> waypoints, const Limits& limits,
-                         double start_speed, double goal_speed) {
+TimeProfile::TimeProfile(std::span<const Vec3> waypoints, const Limits& limits, double start_speed,
+                         double goal_speed) {
   const std::size_t n = waypoints.size() - 1;
   segments_.resize(n);
   for (std::size_t k = 0; k < n; ++k) {
@@ -38,9 +38,9 @@ TimeProfile::TimeProfile(std::span<const Vec3> waypoints, const Limits& limits,
   for (std::size_t k = 0; k + 1 < n; ++k) {
     Segment& a = segments_[k];
     Segment& b = segments_[k + 1];
-    a.v_out = b.v_in = std::min({a.v_max, b.v_max,
-                                 corner_speed(a.direction, b.direction,
-                                              std::min(a.length, b.length), limits.a_max_m_s2)});
+    a.v_out = b.v_in = std::min(
+        {a.v_max, b.v_max,
+         corner_speed(a.direction, b.direction, std::min(a.length, b.length), limits.a_max_m_s2)});
   }
   const auto reachable = [](double v, const Segment& s) {
     return std::sqrt(v * v + 2.0 * s.a_max * s.length);
@@ -60,8 +60,8 @@ TimeProfile::TimeProfile(std::span<const Vec3> waypoints, const Limits& limits,
     s.v_peak = std::max({s.v_peak, s.v_in, s.v_out});
     s.accelerate = (s.v_peak - s.v_in) / s.a_max;
     const double brake = (s.v_peak - s.v_out) / s.a_max;
-    const double ramps = 0.5 * (s.v_peak + s.v_in) * s.accelerate +
-                         0.5 * (s.v_peak + s.v_out) * brake;
+    const double ramps =
+        0.5 * (s.v_peak + s.v_in) * s.accelerate + 0.5 * (s.v_peak + s.v_out) * brake;
     s.cruise = std::max(0.0, s.length - ramps) / s.v_peak;
     s.duration = s.accelerate + s.cruise + brake;
   }

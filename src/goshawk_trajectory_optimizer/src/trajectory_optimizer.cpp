@@ -13,16 +13,16 @@ namespace {
 
 std::string faults_of(const Config& config) {
   std::string faults;
-  describe(config, [&](const char* name, const auto& value, const char*, const char*,
-                       const auto& rule) {
-    bool valid = true;
-    if constexpr (std::is_same_v<std::decay_t<decltype(value)>, std::string>) {
-      valid = std::ranges::find(rule.choices, value) != rule.choices.end();
-    } else {
-      valid = rule.contains(double(value));
-    }
-    if (!valid) faults += std::string(faults.empty() ? "" : ", ") + name;
-  });
+  describe(config,
+           [&](const char* name, const auto& value, const char*, const char*, const auto& rule) {
+             bool valid = true;
+             if constexpr (std::is_same_v<std::decay_t<decltype(value)>, std::string>) {
+               valid = std::ranges::find(rule.choices, value) != rule.choices.end();
+             } else {
+               valid = rule.contains(double(value));
+             }
+             if (!valid) faults += std::string(faults.empty() ? "" : ", ") + name;
+           });
   return faults;
 }
 

@@ -29,7 +29,7 @@ struct CorridorKind {
   int segments = 4;
   double least_length_m = 0.5, most_length_m = 3.5;
   double least_clearance_m = 0.08, most_clearance_m = 1.0;
-  int planes = 16;          // of each polytope, the six of its box included
+  int planes = 16;  // of each polytope, the six of its box included
   double most_turn_rad = 2.0;
 };
 

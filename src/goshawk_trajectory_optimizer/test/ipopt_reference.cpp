@@ -21,9 +21,7 @@ struct Row {
   double bound = 0.0;
   std::vector<int> columns = {};  // where the gradient is not zero
 
-  double value(const VectorXd& x) const {
-    return l.dot(x) + (R * x + c).cwiseAbs2().dot(sign);
-  }
+  double value(const VectorXd& x) const { return l.dot(x) + (R * x + c).cwiseAbs2().dot(sign); }
   VectorXd gradient(const VectorXd& x) const {
     return l + 2.0 * R.transpose() * sign.cwiseProduct(R * x + c);
   }
@@ -57,8 +55,7 @@ class Spline {
   int unknowns() const { return unknowns_; }
 
   BezierPiece piece(int k, const VectorXd& x) const {
-    return BezierPiece::between(state(k, x), state(k + 1, x),
-                                problem_.durations[std::size_t(k)]);
+    return BezierPiece::between(state(k, x), state(k + 1, x), problem_.durations[std::size_t(k)]);
   }
   // point = R x + c of what `pick` takes from piece k
   void affine(int k, const std::function<Vec3(const BezierPiece&)>& pick, int n, MatrixXd& R,
@@ -131,15 +128,16 @@ Dense densify(const SplineProblem& problem, const std::vector<Polytope>& polytop
     const double T = problem.durations[i];
     for (const double u : {0.5 - 0.5 * std::sqrt(0.6), 0.5, 0.5 + 0.5 * std::sqrt(0.6)}) {
       // The squared jerk is a quartic: three Gauss points integrate it exactly.
-      spline.affine(k, [&](const BezierPiece& b) { return b.sample(u * T).jerk; }, dense.n, R, c);
+      spline.affine(
+          k, [&](const BezierPiece& b) { return b.sample(u * T).jerk; }, dense.n, R, c);
       const double w = problem.jerk_weight * T * (u == 0.5 ? 4.0 / 9.0 : 5.0 / 18.0);
       dense.P += w * R.transpose() * R;
       dense.q += w * R.transpose() * c;
       dense.constant += 0.5 * w * c.squaredNorm();
     }
     for (int j = 0; j < 6; ++j) {
-      spline.affine(k, [&](const BezierPiece& b) { return Vec3(b.control_points.col(j)); },
-                    dense.n, R, c);
+      spline.affine(
+          k, [&](const BezierPiece& b) { return Vec3(b.control_points.col(j)); }, dense.n, R, c);
       if (R.isZero(0.0)) continue;
       for (int f = 0; f < polytopes[i].faces(); ++f) {
         Row row{MatrixXd(0, dense.n), VectorXd(0), VectorXd(0),
@@ -149,21 +147,26 @@ Dense densify(const SplineProblem& problem, const std::vector<Polytope>& polytop
       }
     }
     for (int j = 0; j < 5; ++j) {
-      spline.affine(k, [&](const BezierPiece& b) { return Vec3(b.velocity_points().col(j)); },
-                    dense.n, R, c);
+      spline.affine(
+          k, [&](const BezierPiece& b) { return Vec3(b.velocity_points().col(j)); }, dense.n, R, c);
       add_limit(dense, problem, R, c, problem.v_max[i], true);
     }
     for (int j = 0; j < 4; ++j) {
-      spline.affine(k, [&](const BezierPiece& b) { return Vec3(b.acceleration_points().col(j)); },
-                    dense.n, R, c);
+      spline.affine(
+          k, [&](const BezierPiece& b) { return Vec3(b.acceleration_points().col(j)); }, dense.n, R,
+          c);
       add_limit(dense, problem, R, c, problem.a_max[i], false);
     }
   }
   return dense;
 }
 
-VectorXd vector(int n, const double* x) { return Eigen::Map<const VectorXd>(x, n); }
-const Dense& dense_of(UserDataPtr data) { return *static_cast<const Dense*>(data); }
+VectorXd vector(int n, const double* x) {
+  return Eigen::Map<const VectorXd>(x, n);
+}
+const Dense& dense_of(UserDataPtr data) {
+  return *static_cast<const Dense*>(data);
+}
 
 Bool evaluate(Index n, Number* x, Bool, Number* f, UserDataPtr data) {
   const Dense& d = dense_of(data);
@@ -181,8 +184,8 @@ Bool constraints(Index n, Number* x, Bool, Index m, Number* g, UserDataPtr data)
   for (int i = 0; i < m; ++i) g[i] = dense_of(data).rows[std::size_t(i)].value(v);
   return TRUE;
 }
-Bool jacobian(Index n, Number* x, Bool, Index m, Index, Index* rows, Index* columns,
-              Number* values, UserDataPtr data) {
+Bool jacobian(Index n, Number* x, Bool, Index m, Index, Index* rows, Index* columns, Number* values,
+              UserDataPtr data) {
   int next = 0;
   for (int i = 0; i < m; ++i) {
     const Row& row = dense_of(data).rows[std::size_t(i)];
@@ -270,14 +273,13 @@ ReferenceAnswer solve_with_ipopt(const SplineProblem& problem,
     Eigen::Map<Joint>(x.data() + 9 * (k - 1)) = problem.joints[std::size_t(k)];
   }
   if (problem.scale) x[n - 1] = 2.0;
-  IpoptProblem ipopt =
-      CreateIpoptProblem(n, lower.data(), upper.data(), m, row_lower.data(), row_upper.data(),
-                         dense.nonzeros, n * (n + 1) / 2, 0, evaluate, constraints, gradient, jacobian,
-                         hessian);
+  IpoptProblem ipopt = CreateIpoptProblem(n, lower.data(), upper.data(), m, row_lower.data(),
+                                          row_upper.data(), dense.nonzeros, n * (n + 1) / 2, 0,
+                                          evaluate, constraints, gradient, jacobian, hessian);
   set_options(ipopt);
   ReferenceAnswer answer;
-  const auto status = IpoptSolve(ipopt, x.data(), nullptr, &answer.objective, nullptr, nullptr,
-                                 nullptr, &dense);
+  const auto status =
+      IpoptSolve(ipopt, x.data(), nullptr, &answer.objective, nullptr, nullptr, nullptr, &dense);
   FreeIpoptProblem(ipopt);
   answer.solved = status == Solve_Succeeded;
   answer.infeasible = status == Infeasible_Problem_Detected;

@@ -51,8 +51,8 @@ Instance random_instance(Random& random, bool scale, double stretch) {
   config.piece_duration_s = 2.0;
   i.plan = cut_trapezoid(i.request(), config);
   for (double& duration : i.plan.durations_s) duration *= stretch * random.uniform(0.8, 1.25);
-  make_problem(i.request(), i.plan, scale, std::pow(10.0, random.uniform(-2.0, 2.0)), i.problem,
-               i.units);
+  make_problem(i.request(), i.plan, scale, std::pow(10.0, random.uniform(-2.0, 2.0)), HUGE_VAL,
+               i.problem, i.units);
   return i;
 }
 
@@ -130,7 +130,7 @@ TEST(SplineSolver, IterationsDoNotGrowWithThePieces) {
     i.start = at_rest(i.corridor.waypoints_map.front());
     i.goal = at_rest(i.corridor.waypoints_map.back());
     i.plan = cut_trapezoid(i.request(), {});
-    ASSERT_TRUE(make_problem(i.request(), i.plan, true, 100.0, i.problem, i.units));
+    ASSERT_TRUE(make_problem(i.request(), i.plan, true, 100.0, HUGE_VAL, i.problem, i.units));
     const auto outcome = solver.solve(i.problem, {});
     EXPECT_EQ(outcome.status, SplineSolver::Status::solved);
     EXPECT_LT(outcome.iterations, 40) << i.problem.pieces() << " pieces";

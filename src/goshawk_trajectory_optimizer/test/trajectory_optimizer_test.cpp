@@ -40,8 +40,8 @@ void expect_flyable(const Solution& solution, const Corridor& corridor, const Li
         const double n = j, m = 5 - j;
         const auto power = [](double x, double e) { return e < 0 ? 0.0 : std::pow(x, e); };
         const double b = power(u, n) * power(1 - u, m);
-        const double d = n * power(u, n - 1) * power(1 - u, m) -
-                         m * power(u, n) * power(1 - u, m - 1);
+        const double d =
+            n * power(u, n - 1) * power(1 - u, m) - m * power(u, n) * power(1 - u, m - 1);
         const double dd = n * (n - 1) * power(u, n - 2) * power(1 - u, m) -
                           2 * n * m * power(u, n - 1) * power(1 - u, m - 1) +
                           m * (m - 1) * power(u, n) * power(1 - u, m - 2);
@@ -90,9 +90,8 @@ CorridorKind random_kind(Random& random) {
 }
 
 Limits random_limits(Random& random, LimitNorm norm) {
-  return {.v_max_m_s = random.uniform(0.3, 8.0),
-          .a_max_m_s2 = random.uniform(0.3, 10.0),
-          .norm = norm};
+  return {
+      .v_max_m_s = random.uniform(0.3, 8.0), .a_max_m_s2 = random.uniform(0.3, 10.0), .norm = norm};
 }
 
 class EveryNorm : public testing::TestWithParam<LimitNorm> {};
@@ -115,12 +114,12 @@ TEST_P(EveryNorm, EveryRandomCorridorGetsACertifiedFlyableTrajectory) {
     ASSERT_NO_FATAL_FAILURE(expect_flyable(*solution, corridor, limits));
     ASSERT_NO_FATAL_FAILURE(expect_joined(*solution, at_rest(corridor.waypoints_map.front()),
                                           at_rest(corridor.waypoints_map.back())));
-    const double straight =
-        (corridor.waypoints_map.back() - corridor.waypoints_map.front()).norm();
+    const double straight = (corridor.waypoints_map.back() - corridor.waypoints_map.front()).norm();
     const double fastest = limits.norm == LimitNorm::euclidean ? 1.0 : std::sqrt(3.0);
-    EXPECT_GE(solution->trajectory.duration_s(),
-              rest_to_rest_duration_s(straight, fastest * limits.v_max_m_s,
-                                      fastest * limits.a_max_m_s2) * (1.0 - 1e-9));
+    EXPECT_GE(
+        solution->trajectory.duration_s(),
+        rest_to_rest_duration_s(straight, fastest * limits.v_max_m_s, fastest * limits.a_max_m_s2) *
+            (1.0 - 1e-9));
     EXPECT_EQ(solution->pieces, int(solution->trajectory.pieces.size()));
   }
 }

@@ -10,16 +10,16 @@ namespace goshawk::trajectory_optimizer {
 
 struct Config {
   std::string method = "scale";
-  double piece_duration_s = 0.5;  // [s]
+  double piece_duration_s = 0.4;  // [s]
   int min_pieces = 8;
-  int refinement_passes = 2;
+  int refinement_passes = 0;
   double time_weight = 100.0;
   int max_iterations = 60;
   double max_stretch = 20.0;
 };
 
 template <typename Self, typename Visitor>
-  requires std::same_as<std::remove_const_t<Self>, Config>
+requires std::same_as<std::remove_const_t<Self>, Config>
 void describe(Self& c, Visitor&& visit) {
   visit("method", c.method, "",
         "scale: durations and shape together, near time-optimal; fixed: minimum jerk with the "

@@ -21,7 +21,7 @@ struct LimitCone {
 
   /// What the constraint adds to the reduced Hessian: of y y, y eta and eta eta.
   struct Curvature {
-    double along = 0.0;        // yy = diagonal * I + along * direction * direction'
+    double along = 0.0;  // yy = diagonal * I + along * direction * direction'
     double diagonal = 0.0;
     Point direction;
     Point mixed;
@@ -35,9 +35,9 @@ struct LimitCone {
 
   double gain = 1.0;  // 1 / limit, or 2 / limit when Rotated
   Vector s, z;
-  Vector residual;             // s minus the slack that y and eta ask for
-  Vector lambda;               // W z = W^-1 s
-  Vector scaled_dz;            // W dz of the predictor
+  Vector residual;   // s minus the slack that y and eta ask for
+  Vector lambda;     // W z = W^-1 s
+  Vector scaled_dz;  // W dz of the predictor
   Vector ds, dz;
 
   void set_limit(double limit) { gain = (Rotated ? 2.0 : 1.0) / limit; }

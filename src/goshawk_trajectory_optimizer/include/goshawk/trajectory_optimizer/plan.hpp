@@ -53,14 +53,22 @@ struct Units {
   double time_s = 1.0;
 };
 
+/// [m] how far an optimum may be expected to depart from the polyline
+double corner_reach_m(const Plan& plan, const Limits& limits);
+
 /// [m/s^3] the jerk that builds up a_max in the time of a full ramp of the trapezoid: the yardstick
 /// for smoothness.
 double natural_jerk(const Plan& plan, const Limits& limits);
 
 /// @param scale whether the time scale is an unknown; a moving end is then linearised at eta = 1
+/// @param reach_m faces farther than this from a control point of the plan's guess are left out;
+/// the answer must then be checked against all of them
+/// @param end_slack how far the speed limit of the piece at a moving end is raised, relative: the
+///   linearised speed is above the true one by (eta - 1)^2 / 8, which would pin eta to 1 where the
+///   vehicle flies at its limit
 /// @return false where a control point that the ends alone decide leaves its polytope
 bool make_problem(const Request& request, const Plan& plan, bool scale, double time_weight,
-                  SplineProblem& problem, Units& units);
+                  double reach_m, SplineProblem& problem, Units& units, double end_slack = 0.0);
 
 /// The joints of a solution in SI units, the ends exactly as asked, durations times kappa.
 void take_solution(const Request& request, const std::vector<Joint>& joints, const Units& units,

@@ -17,7 +17,7 @@ class SplineSolver {
  public:
   struct Settings {
     int max_iterations = 60;
-    double gap = 1e-8;          // relative duality gap
+    double gap = 1e-8;               // relative duality gap
     double feasibility = 1e-9;       // primal residual
     double dual_feasibility = 1e-7;  // dual residual, relative
   };
@@ -86,8 +86,8 @@ class SplineSolver {
   double predict();
   double correct(double sigma);
   template <int D, bool R>
-  void correct_cones(ConeSet<D, R>& set, double keep, double target);
-  double final_direction(double keep);
+  void correct_cones(ConeSet<D, R>& set, double target);
+  double final_direction();
   void apply_step(double step);
 
   template <typename Visit>

@@ -14,11 +14,11 @@ namespace goshawk::trajectory_optimizer {
 /// A trajectory that holds its certificate.
 struct Solution {
   Trajectory trajectory;
-  Certificate certificate;   // of the trajectory against the limits and polytopes asked for
-  int iterations = 0;        // of the interior-point method, over all solves
+  Certificate certificate;  // of the trajectory against the limits and polytopes asked for
+  int iterations = 0;       // of the interior-point method, over all solves
   int solves = 0;
   int pieces = 0;
-  double jerk_cost = 0.0;    // [m^2/s^5] integral of the squared jerk
+  double jerk_cost = 0.0;  // [m^2/s^5] integral of the squared jerk
 };
 
 /// Fits a piecewise quintic Bezier trajectory into a corridor. Keeps its working memory between
@@ -37,8 +37,8 @@ class TrajectoryOptimizer {
   /// @return a certified solution; else invalid_input, invalid_limits, corridor_disjoint,
   ///   start_infeasible (the start state breaks a limit, or leaves the corridor whatever is
   ///   done), trajectory_infeasible or solver_failed
-  Result<Solution> optimise(const Corridor& corridor, const FlatState& start,
-                            const FlatState& goal, const Limits& limits);
+  Result<Solution> optimise(const Corridor& corridor, const FlatState& start, const FlatState& goal,
+                            const Limits& limits);
 
   /// Which method answers, for reports: "bezier-scale", "bezier-fixed", "bezier-thesis".
   std::string_view implementation() const;
