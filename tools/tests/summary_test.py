@@ -78,7 +78,7 @@ class SummaryTest(unittest.TestCase):
     def test_lists_skipped_cases_with_their_reason(self):
         self.package("a", [ctest("x_test", "passed"),
                            ctest("y", "notrun", Completion_Status="SKIP_RETURN_CODE=77")],
-                     {"x_test": gtest(case("One"), case("Two", "<skipped message='no map'/>"),
+                     {"x_test": gtest(case("One"), case("Two", "<skipped message='/a/b.cpp:86&#10;no map'/>"),
                                       case("Three", status="notrun"))})
         output = self.expect("1 passed, 0 failed, 3 skipped", True)
         self.assertIn("skipped  a/x_test: S.Two: no map", output)

@@ -7,7 +7,9 @@
 namespace goshawk {
 namespace {
 
-std::size_t words_for(int size_x) { return (std::size_t(size_x) + 63) / 64; }
+std::size_t words_for(int size_x) {
+  return (std::size_t(size_x) + 63) / 64;
+}
 
 std::string text(Index3 s) {
   return std::to_string(s.x) + " x " + std::to_string(s.y) + " x " + std::to_string(s.z);
@@ -27,10 +29,10 @@ Result<BitGrid> BitGrid::from_words(Index3 size, bool outside, std::vector<Word>
   if (auto status = check_size(size); !status) return status.error();
   const std::size_t expected = words_for(size.x) * std::size_t(size.y) * std::size_t(size.z);
   if (words.size() != expected) {
-    return fail(ErrorCode::invalid_input,
-                "a grid of " + text(size) + " voxels needs " + std::to_string(expected) +
-                    " words, but " + std::to_string(words.size()) +
-                    " came: pad each x row to whole 64-bit words");
+    return fail(ErrorCode::invalid_input, "a grid of " + text(size) + " voxels needs " +
+                                              std::to_string(expected) + " words, but " +
+                                              std::to_string(words.size()) +
+                                              " came: pad each x row to whole 64-bit words");
   }
   BitGrid grid;
   grid.size_ = size;
@@ -49,9 +51,9 @@ Status BitGrid::check_size(Index3 size) {
   // In this order no product overflows: two factors of at most 2^31 fit into 64 bits.
   const std::int64_t rows = std::int64_t{size.y} * size.z;
   if (rows > kMaxVoxels / size.x) {
-    return fail(ErrorCode::map_too_large,
-                "a grid of " + text(size) + " voxels is larger than the limit of 2^33: use a "
-                "coarser resolution or a smaller box");
+    return fail(ErrorCode::map_too_large, "a grid of " + text(size) +
+                                              " voxels is larger than the limit of 2^33: use a "
+                                              "coarser resolution or a smaller box");
   }
   return success();
 }

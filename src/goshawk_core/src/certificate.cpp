@@ -45,9 +45,9 @@ void certify_piece(const BezierPiece& piece, const Polytope& polytope, const Lim
   const bool sound = piece.duration_s > 0.0 && limits.check().ok();
   raise(c.velocity_m_s,
         sound ? size_of_largest(piece.velocity_points(), limits.norm) - limits.v_max_m_s : kNaN);
-  raise(c.acceleration_m_s2,
-        sound ? size_of_largest(piece.acceleration_points(), limits.norm) - limits.a_max_m_s2
-              : kNaN);
+  raise(
+      c.acceleration_m_s2,
+      sound ? size_of_largest(piece.acceleration_points(), limits.norm) - limits.a_max_m_s2 : kNaN);
 }
 
 void certify_joint(const BezierPiece& before, const BezierPiece& after, Certificate& c) {
@@ -113,8 +113,9 @@ Certificate certify(const Trajectory& trajectory, std::span<const Polytope> poly
     if (before != nullptr) certify_joint(*before, piece, c);
     before = &piece;
   }
+  const auto& last = trajectory.pieces.back();
   c.start_m = difference(trajectory.pieces.front().sample(0.0), start);
-  c.goal_m = difference(before->sample(before->duration_s), goal);
+  c.goal_m = difference(last.sample(last.duration_s), goal);
   return c;
 }
 

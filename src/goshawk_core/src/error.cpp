@@ -47,12 +47,14 @@ constexpr auto kCodes = [] {
   return codes;
 }();
 
-static_assert([] {
-  for (std::size_t i = 0; i < kNames.size(); ++i) {
-    if (static_cast<std::size_t>(kNames[i].code) != i) return false;
-  }
-  return true;
-}(), "kNames follows the order of ErrorCode");
+static_assert(
+    [] {
+      for (std::size_t i = 0; i < kNames.size(); ++i) {
+        if (static_cast<std::size_t>(kNames[i].code) != i) return false;
+      }
+      return true;
+    }(),
+    "kNames follows the order of ErrorCode");
 
 }  // namespace
 
@@ -60,6 +62,8 @@ std::string_view to_string(ErrorCode code) {
   return kNames.at(static_cast<std::size_t>(code)).name;
 }
 
-std::span<const ErrorCode> all_error_codes() { return kCodes; }
+std::span<const ErrorCode> all_error_codes() {
+  return kCodes;
+}
 
 }  // namespace goshawk

@@ -28,9 +28,8 @@ std::optional<Index3> GridGeometry::index_of(const Vec3& p_map) const {
 Status VoxelGrid::check() const {
   if (auto status = geometry.check(); !status) return status;
   if (!(occupied.size() == geometry.size)) {
-    return fail(ErrorCode::invalid_input,
-                "the occupied bits are of " + to_text(occupied.size()) +
-                    " voxels, the grid of " + to_text(geometry.size));
+    return fail(ErrorCode::invalid_input, "the occupied bits are of " + to_text(occupied.size()) +
+                                              " voxels, the grid of " + to_text(geometry.size));
   }
   if (!known.empty() && !(known.size() == geometry.size)) {
     return fail(ErrorCode::invalid_input, "the known bits are of " + to_text(known.size()) +
@@ -54,8 +53,9 @@ Result<Index3> locate(const VoxelGrid& grid, const Vec3& p_map, Endpoint endpoin
   if (grid.occupied.test(*index)) {
     if (grid.unknown_is_occupied && !grid.is_known(*index)) {
       return fail(start ? ErrorCode::start_unknown : ErrorCode::goal_unknown,
-                  name + " lies in unknown space, which counts as occupied: choose a point that "
-                         "was measured free, or treat unknown space as free");
+                  name +
+                      " lies in unknown space, which counts as occupied: choose a point that "
+                      "was measured free, or treat unknown space as free");
     }
     char inflation[32];
     std::snprintf(inflation, sizeof inflation, "%.3f", grid.inflation_m);

@@ -73,9 +73,8 @@ std::vector<Offset> structuring_element(double r, Index3 size) {
       if (k >= 0) rows.push_back({dy, dz, k});
     }
   }
-  std::stable_sort(rows.begin(), rows.end(), [](const Offset& a, const Offset& b) {
-    return a.half_extent < b.half_extent;
-  });
+  std::stable_sort(rows.begin(), rows.end(),
+                   [](const Offset& a, const Offset& b) { return a.half_extent < b.half_extent; });
   return rows;
 }
 
@@ -98,10 +97,11 @@ bool any(const Word* row, std::size_t words) {
 Result<BitGrid> inflate(const BitGrid& occupied, double radius_m, double resolution_m) {
   if (!(std::isfinite(radius_m) && radius_m >= 0.0 && std::isfinite(resolution_m) &&
         resolution_m > 0.0)) {
-    return fail(ErrorCode::invalid_input,
-                "cannot grow obstacles by " + std::to_string(radius_m) + " m at a resolution of " +
-                    std::to_string(resolution_m) + " m: both must be finite, the radius at least "
-                    "0, the resolution above 0");
+    return fail(ErrorCode::invalid_input, "cannot grow obstacles by " + std::to_string(radius_m) +
+                                              " m at a resolution of " +
+                                              std::to_string(resolution_m) +
+                                              " m: both must be finite, the radius at least "
+                                              "0, the resolution above 0");
   }
   const Index3 size = occupied.size();
   if (auto status = BitGrid::check_size(size); !status) return status.error();

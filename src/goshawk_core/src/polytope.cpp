@@ -89,8 +89,7 @@ class LargestBall {
     bool found = false;
     for (const Polytope* polytope : polytopes_) {
       for (int i = 0; i < polytope->faces(); ++i) {
-        const double excess =
-            polytope->A.row(i).dot(point_.head<3>()) + point_[3] - polytope->b[i];
+        const double excess = polytope->A.row(i).dot(point_.head<3>()) + point_[3] - polytope->b[i];
         if (excess <= worst) continue;
         worst = excess;
         entering_ << polytope->A.row(i).transpose(), 1.0;

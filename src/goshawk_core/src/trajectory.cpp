@@ -41,8 +41,7 @@ FlatState BezierPiece::sample(double t_s) const {
           bezier<4>(acceleration_points(), tau), bezier<3>(jerk_points(), tau)};
 }
 
-BezierPiece BezierPiece::between(const FlatState& start, const FlatState& end,
-                                 double duration_s) {
+BezierPiece BezierPiece::between(const FlatState& start, const FlatState& end, double duration_s) {
   const double T = duration_s;
   BezierPiece piece;
   piece.duration_s = T;
@@ -71,8 +70,9 @@ double Trajectory::length_m() const {
   for (const auto& piece : pieces) {
     const double half = piece.duration_s / 2.0;
     for (std::size_t i = 0; i < x.size(); ++i) {
-      length += half * w[i] * (piece.sample(half * (1.0 - x[i])).velocity.norm() +
-                               piece.sample(half * (1.0 + x[i])).velocity.norm());
+      length += half * w[i] *
+                (piece.sample(half * (1.0 - x[i])).velocity.norm() +
+                 piece.sample(half * (1.0 + x[i])).velocity.norm());
     }
   }
   return length;
@@ -129,9 +129,9 @@ Status Trajectory::check() const {
                   "piece " + std::to_string(k) + " has a control point that is not finite");
     }
     if (!(std::isfinite(pieces[k].duration_s) && pieces[k].duration_s > 0.0)) {
-      return fail(ErrorCode::invalid_input,
-                  "piece " + std::to_string(k) + " lasts " + std::to_string(pieces[k].duration_s) +
-                      " s: a duration must be finite and above zero");
+      return fail(ErrorCode::invalid_input, "piece " + std::to_string(k) + " lasts " +
+                                                std::to_string(pieces[k].duration_s) +
+                                                " s: a duration must be finite and above zero");
     }
   }
   return success();

@@ -17,9 +17,11 @@ const std::vector<Index3> kSizes{{1, 1, 1},  {5, 4, 3},   {63, 3, 2},  {64, 3, 2
                                  {65, 3, 2}, {127, 2, 3}, {128, 1, 2}, {130, 2, 2}};
 
 struct Reference {  // a bool a voxel
-  explicit Reference(Index3 s) : size(s), bits(std::size_t(s.x * s.y * s.z)) {}
+  explicit Reference(Index3 s)
+      : size(s), bits(std::size_t(s.x) * std::size_t(s.y) * std::size_t(s.z)) {}
   std::vector<bool>::reference at(Index3 i) {
-    return bits[std::size_t((i.z * size.y + i.y) * size.x + i.x)];
+    const int row = i.z * size.y + i.y;
+    return bits[std::size_t(row) * std::size_t(size.x) + std::size_t(i.x)];
   }
   Index3 size;
   std::vector<bool> bits;

@@ -67,7 +67,7 @@ TEST(Inflate, EqualsTheDistanceBetweenCubesOnEverySizeAndRadius) {
       for (const int tenths : {1, 5, 9, 10, 11, 14, 15, 20, 21, 25, 30, 35, 40, 63, 300, 660}) {
         const auto grown = inflate(grid, tenths * 0.1, 1.0);
         ASSERT_TRUE(grown.ok());
-        ASSERT_TRUE(*grown == brute_force(grid, tenths * tenths, 100))
+        ASSERT_TRUE(*grown == brute_force(grid, std::int64_t{tenths} * tenths, 100))
             << to_text(size) << " radius " << tenths * 0.1;
       }
     }
@@ -80,7 +80,7 @@ TEST(Inflate, DoesNotReachFurtherWhenTheRadiusIsAMultipleOfTheResolution) {
   const BitGrid grid = random_grid({70, 12, 9}, true, 0.002, random);
   for (const double resolution : {0.05, 0.1, 0.2, 0.3, 0.7, 1.1}) {
     for (int n = 1; n <= 12; ++n) {
-      const BitGrid expected = brute_force(grid, n * n, 1);
+      const BitGrid expected = brute_force(grid, std::int64_t{n} * n, 1);
       ASSERT_TRUE(*inflate(grid, n * resolution, resolution) == expected) << n << " " << resolution;
       double sum = 0.0;
       for (int i = 0; i < n; ++i) sum += resolution;
