@@ -24,6 +24,8 @@ macro(goshawk_project_setup)
   # our own code, so that asserts are a part of what is tested and flown.
   set(CMAKE_CXX_FLAGS_RELEASE "-O2")
   add_compile_options(-ffp-contract=off)
+  # A component that misses a symbol fails here, not when a user loads it.
+  add_link_options(-Wl,--no-undefined)
   option(GOSHAWK_WERROR "Warnings are errors" ON)
   option(GOSHAWK_NATIVE "Compile for this machine's processor only" OFF)
   set(GOSHAWK_SANITIZE "" CACHE STRING "Sanitizers, e.g. address,undefined or thread")
