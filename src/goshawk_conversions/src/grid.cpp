@@ -1,5 +1,6 @@
 #include "goshawk/conversions/grid.hpp"
 
+#include <algorithm>
 #include <limits>
 
 #include "goshawk/conversions/geometry.hpp"
@@ -44,6 +45,44 @@ void fill_msg(const VoxelGrid& grid, goshawk_msgs::msg::VoxelGrid& m) {
   m.unknown_is_occupied(grid.unknown_is_occupied);
   m.occupied().assign(grid.occupied.words().begin(), grid.occupied.words().end());
   m.known().assign(grid.known.words().begin(), grid.known.words().end());
+}
+
+Result<GridUpdate> from_msg(const goshawk_msgs::msg::VoxelGridUpdate& m) {
+  if (auto status = check_frame(m.header(), kMapFrame, "a voxel grid update"); !status) {
+    return status.error();
+  }
+  GridUpdate update{m.from_version(), m.to_version(), {}};
+  update.bricks.reserve(m.bricks().size());
+  for (const auto& b : m.bricks()) {
+    if (b.occupied().size() != Brick::kWords || b.known().size() != Brick::kWords) {
+      return fail(ErrorCode::invalid_input,
+                  "a brick of an update has " + std::to_string(b.occupied().size()) + " and " +
+                      std::to_string(b.known().size()) + " words: 64 and 64 are needed");
+    }
+    constexpr std::uint32_t kMax = 1U << 28;  // far beyond any grid; apply() has the exact check
+    Brick brick;
+    brick.index = {int(std::min(b.word_x(), kMax)), int(std::min(b.brick_y(), kMax)),
+                   int(std::min(b.brick_z(), kMax))};
+    std::ranges::copy(b.occupied(), brick.occupied.begin());
+    std::ranges::copy(b.known(), brick.known.begin());
+    update.bricks.push_back(brick);
+  }
+  return update;
+}
+
+void fill_msg(const GridUpdate& update, goshawk_msgs::msg::VoxelGridUpdate& m) {
+  m.from_version(update.from_version);
+  m.to_version(update.to_version);
+  m.bricks().resize(update.bricks.size());
+  for (std::size_t k = 0; k < update.bricks.size(); ++k) {
+    const Brick& brick = update.bricks[k];
+    auto& b = m.bricks()[k];
+    b.word_x(std::uint32_t(brick.index.x));
+    b.brick_y(std::uint32_t(brick.index.y));
+    b.brick_z(std::uint32_t(brick.index.z));
+    b.occupied().assign(brick.occupied.begin(), brick.occupied.end());
+    b.known().assign(brick.known.begin(), brick.known.end());
+  }
 }
 
 }  // namespace goshawk::conversions

@@ -138,6 +138,49 @@ TEST(VoxelGridMessage, WithTheWrongNumberOfWordsIsRefused) {
   EXPECT_EQ(from_msg(m).code(), ErrorCode::map_too_large);
 }
 
+TEST(VoxelGridUpdateMessage, SurvivesTheRoundTripAndBringsTheGridUpToDate) {
+  VoxelGrid grid;
+  grid.geometry = {Vec3::Zero(), 0.25, {70, 9, 2}};
+  grid.occupied = BitGrid(grid.geometry.size, true);
+  grid.known = BitGrid(grid.geometry.size, false);
+  grid.version = 3;
+  GridUpdate in{3, 4, {Brick{}}};
+  in.bricks[0].index = {1, 1, 0};
+  in.bricks[0].occupied[0] = 0b101;
+  in.bricks[0].known[0] = 0b111;
+  goshawk_msgs::msg::VoxelGridUpdate m;
+  m.header(make_header(0));
+  fill_msg(in, m);
+  const auto out = from_msg(m);
+  ASSERT_TRUE(out.ok()) << out.error().message;
+  EXPECT_EQ(out->bricks, in.bricks);
+  ASSERT_TRUE(apply(grid, *out).ok());
+  EXPECT_EQ(grid.version, 4u);
+  EXPECT_TRUE(grid.occupied.get({66, 8, 0}));
+  EXPECT_FALSE(grid.occupied.get({65, 8, 0}));
+  EXPECT_EQ(grid.occupied.count(), 2);
+  EXPECT_EQ(grid.known.count(), 3);
+}
+
+TEST(VoxelGridUpdateMessage, WithShortBricksOrFarIndicesIsRefused) {
+  GridUpdate in{1, 2, {Brick{}}};
+  goshawk_msgs::msg::VoxelGridUpdate m;
+  m.header(make_header(0));
+  fill_msg(in, m);
+  m.bricks()[0].known().pop_back();
+  EXPECT_EQ(from_msg(m).code(), ErrorCode::invalid_input);
+  fill_msg(in, m);
+  m.bricks()[0].brick_z(4'000'000'000U);
+  VoxelGrid grid;
+  grid.geometry = {Vec3::Zero(), 0.25, {70, 9, 2}};
+  grid.occupied = BitGrid(grid.geometry.size, true);
+  grid.known = BitGrid(grid.geometry.size, false);
+  grid.version = 1;
+  const auto far = from_msg(m);
+  ASSERT_TRUE(far.ok());
+  EXPECT_EQ(apply(grid, *far).code(), ErrorCode::invalid_input);
+}
+
 TEST(PolytopeMessage, WithSizesThatDisagreeOrNormalsOfAnotherLengthIsRefused) {
   const auto box = Polytope::box(Vec3::Zero(), Vec3::Ones());
   auto m = to_msg(box);

@@ -120,17 +120,7 @@ class MapServerComponent : public Component {
   void publish_update(const GridUpdate& update) {
     msg::VoxelGridUpdate m;
     m.header(conversions::make_header(node_.now_ns()));
-    m.from_version(update.from_version);
-    m.to_version(update.to_version);
-    for (const auto& brick : update.bricks) {
-      msg::VoxelBrick b;
-      b.word_x(std::uint32_t(brick.index.x));
-      b.brick_y(std::uint32_t(brick.index.y));
-      b.brick_z(std::uint32_t(brick.index.z));
-      b.occupied().assign(brick.occupied.begin(), brick.occupied.end());
-      b.known().assign(brick.known.begin(), brick.known.end());
-      m.bricks().push_back(std::move(b));
-    }
+    conversions::fill_msg(update, m);
     send(updates_, m);
   }
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "goshawk/map_server/grid_update.hpp"
+#include "goshawk/core/grid_update.hpp"
 #include "goshawk/map_server/voxel_map.hpp"
 
 namespace goshawk::map_server {

@@ -4,16 +4,36 @@
 
 namespace goshawk::runtime {
 
-MapSubscription::MapSubscription(Node& node, StageReporter& reporter, Callback on_map) {
-  using Message = goshawk_msgs::msg::VoxelGrid;
-  node.subscribe<Message>(
+namespace msg = goshawk_msgs::msg;
+
+MapSubscription::MapSubscription(Node& node, StageReporter& reporter, Callback on_map)
+    : reporter_(reporter), on_map_(std::move(on_map)) {
+  node.subscribe<msg::VoxelGrid>(
       "map/voxels", Qos::latched(),
-      [this, &reporter, on_map = std::move(on_map)](const Message& m, const MessageInfo&) {
-        auto grid = conversions::from_msg(m);
-        if (!grid) return reporter.fault(grid.error());
-        grid_ = std::make_shared<const VoxelGrid>(*std::move(grid));
-        if (on_map) on_map(grid_);
-      });
+      [this](const msg::VoxelGrid& m, const MessageInfo&) { on_grid(m); });
+  node.subscribe<msg::VoxelGridUpdate>(
+      "map/voxels/updates", Qos::reliable_last(50),
+      [this](const msg::VoxelGridUpdate& m, const MessageInfo&) { on_update(m); });
+}
+
+void MapSubscription::on_grid(const msg::VoxelGrid& m) {
+  auto grid = conversions::from_msg(m);
+  if (!grid) return reporter_.fault(grid.error());
+  take(*std::move(grid));
+}
+
+void MapSubscription::on_update(const msg::VoxelGridUpdate& m) {
+  if (grid_ == nullptr || grid_->version != m.from_version()) return;
+  const auto update = conversions::from_msg(m);
+  if (!update) return reporter_.fault(update.error());
+  VoxelGrid grid = *grid_;
+  if (auto status = apply(grid, *update); !status) return reporter_.fault(status.error());
+  take(std::move(grid));
+}
+
+void MapSubscription::take(VoxelGrid grid) {
+  grid_ = std::make_shared<const VoxelGrid>(std::move(grid));
+  if (on_map_) on_map_(grid_);
 }
 
 }  // namespace goshawk::runtime

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "goshawk/core/grid_geometry.hpp"
+#include "goshawk/core/grid_update.hpp"
 #include "goshawk_msgs.h"
 
 namespace goshawk::conversions {
@@ -10,5 +11,10 @@ Result<VoxelGrid> from_msg(const goshawk_msgs::msg::VoxelGrid& m);
 
 /// Fills a message in place, so that a large map's buffers are used again. The header stays.
 void fill_msg(const VoxelGrid& grid, goshawk_msgs::msg::VoxelGrid& m);
+
+/// @return wrong_frame, or invalid_input where a brick has not 64 words of each kind
+Result<GridUpdate> from_msg(const goshawk_msgs::msg::VoxelGridUpdate& m);
+/// The header stays.
+void fill_msg(const GridUpdate& update, goshawk_msgs::msg::VoxelGridUpdate& m);
 
 }  // namespace goshawk::conversions

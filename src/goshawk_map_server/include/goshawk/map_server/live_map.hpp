@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <span>
 
-#include "goshawk/map_server/grid_update.hpp"
+#include "goshawk/core/grid_update.hpp"
 #include "goshawk/map_server/map_file.hpp"
 #include "goshawk/map_server/voxel_map.hpp"
 

@@ -8,8 +8,9 @@
 
 namespace goshawk::runtime {
 
-/// Keeps a stage's copy of the map up to date from `map/voxels`. A message that is not a valid
-/// grid is reported on stage_report, and the grid before it stays.
+/// Keeps a stage's copy of the map up to date from `map/voxels` and `map/voxels/updates`. A message
+/// that is wrong is reported on stage_report, and the grid before it stays. An update that does
+/// not follow on the version here is dropped: the whole map comes again soon after.
 class MapSubscription {
  public:
   using Callback = std::function<void(const std::shared_ptr<const VoxelGrid>&)>;
@@ -21,6 +22,12 @@ class MapSubscription {
   const std::shared_ptr<const VoxelGrid>& grid() const { return grid_; }
 
  private:
+  void on_grid(const goshawk_msgs::msg::VoxelGrid& m);
+  void on_update(const goshawk_msgs::msg::VoxelGridUpdate& m);
+  void take(VoxelGrid grid);
+
+  StageReporter& reporter_;
+  Callback on_map_;
   std::shared_ptr<const VoxelGrid> grid_;
 };
 

@@ -7,7 +7,7 @@
 #include "goshawk/core/grid_geometry.hpp"
 #include "goshawk/core/result.hpp"
 
-namespace goshawk::map_server {
+namespace goshawk {
 
 /// A block of 64 x 8 x 8 voxels: one word of each of 64 rows. Brick (i, j, k) begins at voxel
 /// (64 i, 8 j, 8 k); word 8 (z % 8) + y % 8 is the row (y, z). Rows and bits outside the grid
@@ -41,4 +41,4 @@ struct GridUpdate {
 /// known bits, or a brick lies outside it
 Status apply(VoxelGrid& grid, const GridUpdate& update);
 
-}  // namespace goshawk::map_server
+}  // namespace goshawk

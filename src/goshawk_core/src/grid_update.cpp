@@ -1,8 +1,8 @@
-#include "goshawk/map_server/grid_update.hpp"
+#include "goshawk/core/grid_update.hpp"
 
 #include <algorithm>
 
-namespace goshawk::map_server {
+namespace goshawk {
 namespace {
 
 bool inside(Index3 i, Index3 n) {
@@ -63,4 +63,4 @@ Status apply(VoxelGrid& grid, const GridUpdate& update) {
   return success();
 }
 
-}  // namespace goshawk::map_server
+}  // namespace goshawk

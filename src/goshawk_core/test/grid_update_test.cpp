@@ -1,10 +1,10 @@
-#include "goshawk/map_server/grid_update.hpp"
+#include "goshawk/core/grid_update.hpp"
 
 #include <gmock/gmock.h>
 
-#include "support.hpp"
+#include "goshawk/core/random.hpp"
 
-namespace goshawk::map_server {
+namespace goshawk {
 namespace {
 
 VoxelGrid small_grid() {
@@ -60,4 +60,4 @@ TEST(GridUpdate, WhatDoesNotFitIsRefusedWholly) {
 }
 
 }  // namespace
-}  // namespace goshawk::map_server
+}  // namespace goshawk
