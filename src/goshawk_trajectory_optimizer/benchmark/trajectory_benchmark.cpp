@@ -61,9 +61,9 @@ void time_and_shape(benchmark::State& state) {
   }
   if (!solution) return state.SkipWithError(solution.error().message.c_str());
   state.counters["pieces"] = solution->pieces;
-  state.counters["us_per_piece"] = benchmark::Counter(
-      1e-6 * solution->pieces,
-      benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  state.counters["us_per_piece"] =
+      benchmark::Counter(1e-6 * solution->pieces, benchmark::Counter::kIsIterationInvariantRate |
+                                                      benchmark::Counter::kInvert);
   state.SetLabel(std::to_string(solution->iterations) + " iterations, " +
                  std::to_string(solution->solves) + " solves");
 }

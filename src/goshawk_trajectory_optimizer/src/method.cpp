@@ -78,12 +78,11 @@ void TrajectoryOptimizer::Method::refine(const Request& request, Plan& plan) {
   for (int pass = 0; pass < passes; ++pass) {
     const double slack = rests ? 0.0 : kEndSlack[std::min<std::size_t>(std::size_t(pass), 4)];
     const double gap = pass < config_.refinement_passes ? kCoarseGap : kFineGap;
-    const Plan guess = plan;
     double kappa = 1.0;
     if (!solve_scale(request, plan, reach_m, gap, slack, kappa)) return;
-    if (!consider(request, plan) && reach_m < kAllFaces) {  // through a face that was left out
+    consider(request, plan);
+    if (outside_ && reach_m < kAllFaces) {  // through a face that was left out
       reach_m = kAllFaces;
-      plan = guess;
       if (!solve_scale(request, plan, reach_m, gap, slack, kappa)) return;
       consider(request, plan);
     }
@@ -136,10 +135,8 @@ void TrajectoryOptimizer::Method::try_longer(const Request& request, const Plan&
 }
 
 bool TrajectoryOptimizer::Method::solve_scale(const Request& request, Plan& plan, double reach_m,
-                                              double gap,
-                                              double end_slack, double& kappa) {
-  if (!make_problem(request, plan, true, config_.time_weight, reach_m, problem_, units_,
-                    end_slack))
+                                              double gap, double end_slack, double& kappa) {
+  if (!make_problem(request, plan, true, config_.time_weight, reach_m, problem_, units_, end_slack))
     return false;
   last_ = solver_.solve(problem_, {config_.max_iterations, gap, 1e-8, 1e-3});
   iterations_ += last_.iterations;
@@ -184,6 +181,7 @@ bool TrajectoryOptimizer::Method::consider(const Request& request, const Plan& p
   if (!trajectory.check()) return false;
   const Certificate certificate =
       certify(trajectory, request.corridor.polytopes, request.limits, request.start, request.goal);
+  outside_ = certificate.position_m > 1e-6;
   if (!certificate.holds()) return false;
   const double jerk_cost = trajectory.jerk_cost();
   const double natural = natural_jerk(plan, request.limits);

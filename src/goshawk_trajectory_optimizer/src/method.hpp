@@ -24,8 +24,8 @@ class TrajectoryOptimizer::Method {
   void refine(const Request& request, Plan& plan);
   /// Time and shape together, once: the plan becomes the solution and kappa its time scale.
   /// @param gap relative, where to stop
-  bool solve_scale(const Request& request, Plan& plan, double reach_m, double gap,
-                   double end_slack, double& kappa);
+  bool solve_scale(const Request& request, Plan& plan, double reach_m, double gap, double end_slack,
+                   double& kappa);
   /// Least jerk with the plan's durations.
   bool solve_fixed(const Request& request, Plan& plan);
   /// Fixed durations, longer and longer, until a plan is certified.
@@ -43,6 +43,7 @@ class TrajectoryOptimizer::Method {
   Units units_;
   std::optional<Solution> best_;
   double best_cost_ = 0.0;
+  bool outside_ = false;  // the plan last considered leaves its polytopes
   int iterations_ = 0;
   int solves_ = 0;
   SplineSolver::Outcome last_;

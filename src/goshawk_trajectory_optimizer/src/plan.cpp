@@ -12,7 +12,7 @@ namespace {
 constexpr double kLeastLength = 1e-6;  // [m] of a path, for the estimate of its duration
 constexpr double kShortest = 0.01;     // of a mean piece: shorter ones cost accuracy
 
-constexpr double kCorner = 0.3;  // of v^2 / a: how far a corner is cut, generously
+constexpr double kCorner = 0.6;  // of v^2 / a: how far a corner is cut, generously
 
 double speed_along(const FlatState& state, const Vec3& from, const Vec3& to) {
   const Vec3 step = to - from;

@@ -78,7 +78,10 @@ TEST(SplineSolver, FixedDurationsGiveIpoptsObjectiveAndSolution) {
       EXPECT_FALSE(truth.solved);
       continue;
     }
-    ASSERT_EQ(outcome.status, SplineSolver::Status::solved);
+    ASSERT_EQ(outcome.status, SplineSolver::Status::solved)
+        << outcome.iterations << " iterations, gap " << outcome.gap << " of " << outcome.objective
+        << ", residuals " << outcome.primal_residual << " " << outcome.dual_residual << ", Ipopt "
+        << (truth.solved ? "solved" : "did not solve") << " it, " << truth.objective;
     if (!truth.solved) continue;
     ++compared;
     EXPECT_NEAR(outcome.objective, truth.objective, 1e-6 * (1.0 + std::abs(truth.objective)));
