@@ -117,15 +117,16 @@ void Navigator::plan(std::int64_t now_ns) {
     return ask(flight_->trajectory.sample(std::min(t_s, flight_->trajectory.duration_s())),
                switch_ns, now_ns);
   }
-  if (!odometry_is_fresh(now_ns)) {
-    return give_up(fail(ErrorCode::tracking_lost,
-                        "no odometry comes, so there is nowhere to plan from: is the vehicle, or "
-                        "the simulator, running?"));
-  }
-  if (!at_rest()) {  // a trajectory that is just ending, or a vehicle that brakes by itself
+  // Odometry that was only just discovered, a trajectory that is just ending, a vehicle that brakes
+  // by itself: all of these pass.
+  if (!odometry_is_fresh(now_ns) || !at_rest()) {
     if (now_ns - wait_begin_ns_ < to_ns(config_.settle_timeout_s)) return;
-    return give_up(fail(ErrorCode::tracking_lost,
-                        "the vehicle moves without a trajectory and does not come to rest"));
+    return give_up(
+        fail(ErrorCode::tracking_lost,
+             odometry_is_fresh(now_ns)
+                 ? "the vehicle moves without a trajectory and does not come to rest"
+                 : "no odometry comes, so there is nowhere to plan from: is the vehicle, or the "
+                   "simulator, running?"));
   }
   FlatState start;
   const bool holds_end =

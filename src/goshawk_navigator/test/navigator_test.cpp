@@ -234,10 +234,23 @@ TEST(Navigator, WithoutOdometryNamesWhatIsMissing) {
   h.odometry_comes = false;
   h.pass(1.0);
   h.goal(kGoal);
+  h.pass(6.0);
   EXPECT_TRUE(h.plans.empty());
   EXPECT_EQ(h.last().state, State::failed);
   EXPECT_EQ(h.last().reason.code, ErrorCode::tracking_lost);
   EXPECT_THAT(h.last().reason.message, HasSubstr("odometry"));
+}
+
+TEST(Navigator, WaitsForOdometryThatComesALittleAfterTheGoal) {
+  Harness h;
+  h.odometry_comes = false;
+  h.pass(1.0);
+  h.goal(kGoal);
+  h.pass(1.0);
+  EXPECT_TRUE(h.plans.empty());
+  h.odometry_comes = true;
+  h.pass(0.1);
+  EXPECT_EQ(h.plans.size(), 1u);
 }
 
 TEST(Navigator, DoesNotPlanFromRestWhileTheVehicleMovesByItself) {

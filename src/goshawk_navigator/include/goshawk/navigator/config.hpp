@@ -51,7 +51,7 @@ void describe(Self& c, Visitor&& visit) {
   visit("rest_speed_m_s", c.rest_speed_m_s, "m/s", "slower than this is at rest",
         Range::positive(10.0));
   visit("settle_timeout_s", c.settle_timeout_s, "s",
-        "how long after its trajectory's end the vehicle may take to come to rest",
+        "how long a plan waits for odometry and for the vehicle to come to rest",
         Range::positive(600.0));
   visit("odometry_timeout_s", c.odometry_timeout_s, "s", "older odometry is none",
         Range::positive(60.0));

@@ -1,0 +1,518 @@
+"""What the system tests share: the installed programs, a domain and a folder of a test's own,
+processes that are always stopped, and a report for CTest.
+
+A test file ends with `harness.main()`; CTest calls it with the names of test classes. Exit status
+77 says that all tests were skipped.
+"""
+
+import json
+import math
+import os
+import pathlib
+import re
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+import uuid
+import xml.etree.ElementTree as ElementTree
+
+SOURCE = pathlib.Path(os.environ.get("GOSHAWK_SOURCE") or
+                      pathlib.Path(__file__).resolve().parents[3])
+PREFIX = pathlib.Path(os.environ.get("GOSHAWK_PREFIX") or SOURCE / "install")
+GOSHAWK = str(PREFIX / "bin" / "goshawk")
+STAGES = ["map_server", "path_search", "corridor_builder", "trajectory_optimizer", "navigator",
+          "tracker", "simulator"]
+MARGIN_M = 0.05          # map_server's default, for the tracking error
+BODY_RADIUS_M = 0.15     # map_server's default
+SKIPPED = 77
+TOKEN = "GOSHAWK_SYSTEM_TEST"
+# Cyclone DDS on loopback, without multicast, finding what Goshawk starts.
+CYCLONE = ("<CycloneDDS><Domain><General><Interfaces><NetworkInterface name='lo'/></Interfaces>"
+           "<AllowMulticast>false</AllowMulticast></General><Discovery><Peers>"
+           "<Peer address='127.0.0.1'/></Peers><ParticipantIndex>auto</ParticipantIndex>"
+           "<MaxAutoParticipantIndex>60</MaxAutoParticipantIndex></Discovery></Domain>"
+           "</CycloneDDS>")
+
+
+def data_file(test, relative):
+    """A file of the shared data; where it is absent the test is skipped, and says so."""
+    folders = [os.environ.get("GOSHAWK_DATA"), SOURCE.parent / "shared" / "data"]
+    for folder in folders:
+        if folder and (pathlib.Path(folder) / relative).is_file():
+            return str(pathlib.Path(folder) / relative)
+    test.skipTest(f"{relative} is in none of {[str(f) for f in folders if f]}: set GOSHAWK_DATA")
+
+
+def udp_ports_in_use():
+    ports = set()
+    for table in ("/proc/net/udp", "/proc/net/udp6"):
+        try:
+            lines = pathlib.Path(table).read_text().splitlines()[1:]
+        except OSError:
+            continue
+        ports.update(int(line.split()[1].rsplit(":", 1)[1], 16) for line in lines)
+    return ports
+
+
+class Domain:
+    """A DDS domain that nobody else uses, until close()."""
+
+    # Where DDS puts its discovery: these ports of a domain tell whether somebody is in it.
+    KNOCK = range(10, 40, 2)
+
+    def __init__(self):
+        used = udp_ports_in_use()
+        for k in range(132):
+            number = 101 + (os.getpid() * 7 + k) % 132
+            if any(7400 + 250 * number + port in used for port in self.KNOCK):
+                continue
+            # Another test of ours that runs beside this one: the name goes with its process.
+            self.lock = socket.socket(socket.AF_UNIX)
+            try:
+                self.lock.bind(f"\0goshawk-test-domain-{number}")
+            except OSError:
+                self.lock.close()
+                continue
+            self.number = number
+            return
+        raise RuntimeError("no DDS domain from 101 to 232 is free")
+
+    def close(self):
+        self.lock.close()
+
+
+class Outcome:
+    def __init__(self, command, status, out, err, seconds):
+        self.command, self.status, self.out, self.err = command, status, out, err
+        self.seconds = seconds
+
+    def __str__(self):
+        return (f"{' '.join(self.command)}\n  status {self.status} after {self.seconds:.1f} s\n"
+                f"  stdout: {self.out[-1500:]}\n  stderr: {self.err[-1500:]}")
+
+
+class Process:
+    """A program that runs beside the test; its output goes to files. Stopped by its own id."""
+
+    def __init__(self, command, env, folder, cwd=None):
+        self.command = [str(word) for word in command]
+        name = f"{os.path.basename(self.command[0])}-{uuid.uuid4().hex[:8]}"
+        self.out_path, self.err_path = (folder / f"{name}.{end}" for end in ("out", "err"))
+        with open(self.out_path, "wb") as out, open(self.err_path, "wb") as err:
+            self.process = subprocess.Popen(self.command, stdin=subprocess.DEVNULL, stdout=out,
+                                            stderr=err, env=env, cwd=cwd)
+        self.begin = time.monotonic()
+
+    @property
+    def pid(self):
+        return self.process.pid
+
+    def out(self):
+        return self.out_path.read_text(errors="replace")
+
+    def err(self):
+        return self.err_path.read_text(errors="replace")
+
+    def alive(self):
+        return self.process.poll() is None
+
+    def wait(self, timeout_s):
+        """@return the exit status, or None where it still runs"""
+        try:
+            return self.process.wait(timeout_s)
+        except subprocess.TimeoutExpired:
+            return None
+
+    def stop(self, number=signal.SIGINT, timeout_s=10.0):
+        """Signals it, and kills it where that does not help. @return status and seconds taken"""
+        begin = time.monotonic()
+        if self.alive():
+            self.process.send_signal(number)
+            if self.wait(timeout_s) is None:
+                self.process.kill()
+                self.process.wait()
+        return self.process.returncode, time.monotonic() - begin
+
+    def outcome(self):
+        return Outcome(self.command, self.process.returncode, self.out(), self.err(),
+                       time.monotonic() - self.begin)
+
+    def lines(self):
+        """Whole lines of JSON that came so far."""
+        text = self.out()
+        whole = text[:text.rfind("\n") + 1]
+        return [json.loads(line) for line in whole.splitlines() if line.startswith("{")]
+
+
+def until(condition, timeout_s, step_s=0.05):
+    """The first value of condition() that is true, or its last one."""
+    end = time.monotonic() + timeout_s
+    while True:
+        value = condition()
+        if value or time.monotonic() > end:
+            return value
+        time.sleep(step_s)
+
+
+def processes_of(token):
+    """Ids of the processes that inherited this test's token: whatever it started, however deep."""
+    mark = f"{TOKEN}={token}\0".encode()
+    found = []
+    for entry in os.listdir("/proc"):
+        if not entry.isdigit() or int(entry) == os.getpid():
+            continue
+        try:
+            if mark in pathlib.Path(f"/proc/{entry}/environ").read_bytes() + b"\0":
+                state = pathlib.Path(f"/proc/{entry}/stat").read_text().rsplit(")", 1)[1].split()[0]
+                if state != "Z":
+                    found.append(int(entry))
+        except OSError:
+            continue
+    return found
+
+
+class Sandbox:
+    """A domain, a folder, an environment; close() ends what is still there and tells of it."""
+
+    def __init__(self):
+        self.temporary = tempfile.TemporaryDirectory(prefix="goshawk-system-")
+        self.folder = pathlib.Path(self.temporary.name)
+        self.domain = Domain()
+        self.token = uuid.uuid4().hex
+        self.env = {**os.environ, "ROS_DOMAIN_ID": str(self.domain.number), TOKEN: self.token,
+                    "CYCLONEDDS_URI": CYCLONE, "PYTHONDONTWRITEBYTECODE": "1"}
+        for name in ("GOSHAWK_INTERFACES", "FASTRTPS_DEFAULT_PROFILES_FILE"):
+            self.env.pop(name, None)
+        self.processes = []
+
+    def close(self):
+        for process in reversed(self.processes):
+            process.stop()
+        gone = until(lambda: not processes_of(self.token), 3.0)
+        survivors = [] if gone else processes_of(self.token)
+        told = [(pid, command_of(pid)) for pid in survivors]
+        for pid in survivors:
+            try:
+                os.kill(pid, signal.SIGKILL)
+            except ProcessLookupError:
+                pass
+        self.domain.close()
+        self.temporary.cleanup()
+        return told
+
+    def start(self, *command, env=None, cwd=None):
+        process = Process(command, {**self.env, **(env or {})}, self.folder, cwd or self.folder)
+        self.processes.append(process)
+        return process
+
+    def call(self, *command, timeout_s=60.0, env=None, cwd=None):
+        """Runs a program to its end. A time-out is a failure of the test."""
+        process = self.start(*command, env=env, cwd=cwd)
+        if process.wait(timeout_s) is None:
+            process.stop(signal.SIGTERM, 3.0)
+            raise AssertionError(f"still running after {timeout_s} s:\n{process.outcome()}")
+        self.processes.remove(process)
+        return process.outcome()
+
+    def goshawk(self, *arguments, **keywords):
+        return self.call(GOSHAWK, *arguments, **keywords)
+
+
+def command_of(pid):
+    try:
+        text = pathlib.Path(f"/proc/{pid}/cmdline").read_bytes()
+        return text.replace(b"\0", b" ").decode(errors="replace")
+    except OSError:
+        return "?"
+
+
+class Launch:
+    """`goshawk launch FILE` with JSON events, and the logs of what it starts."""
+
+    def __init__(self, sandbox, file, *ros_args):
+        self.sandbox = sandbox
+        self.logs = sandbox.folder / f"logs-{uuid.uuid4().hex[:6]}"
+        command = [GOSHAWK, "launch", file, "--json", "--log-dir", self.logs]
+        if ros_args:
+            command += ["--ros-args", *ros_args]
+        self.process = sandbox.start(*command)
+
+    def events(self, event=None, stage=None):
+        return [e for e in self.process.lines()
+                if event in (None, e["event"]) and stage in (None, e["stage"])]
+
+    def pids(self):
+        return spawned(self.logs)
+
+    def tails(self):
+        texts = [f"--- {path.name}\n{path.read_text(errors='replace')[-600:]}"
+                 for path in sorted(self.logs.glob("*.log"))]
+        return "\n".join([self.process.out()[-1500:], self.process.err()[-1500:], *texts])
+
+
+def spawned(logs):
+    """The newest process id of every program, from supervisord's log."""
+    try:
+        text = (pathlib.Path(logs) / "supervisord.log").read_text(errors="replace")
+    except OSError:
+        return {}
+    return {name: int(pid) for name, pid in re.findall(r"spawned: '([^']+)' with pid (\d+)", text)}
+
+
+class Stack:
+    """Every stage launched in a world of its own, with the topics that tell what happens."""
+
+    def __init__(self, sandbox, file="flight", ros_args=()):
+        self.sandbox = sandbox
+        self.world = sandbox.folder / "world.bt"
+        made = sandbox.goshawk("world", self.world, "--json")
+        if made.status != 0:
+            raise AssertionError(f"the world could not be made: {made}")
+        self.launch = Launch(sandbox, file, "-p", f"map_server:map_file:={self.world}", *ros_args)
+        self.reports = self.echo("stage_report")
+        self.states = self.echo("navigator_state")
+        self.odom = self.echo("odom", "--no-arr")
+
+    def echo(self, topic, *options):
+        return self.sandbox.start(GOSHAWK, "topic", "echo", topic, "--json", *options)
+
+    def wait_ready(self, timeout_s=30.0):
+        def missing():
+            ready = {r["stage"] for r in self.reports.lines()
+                     if r["request_id"] == 0 and r["code"] == "ok"}
+            return set(STAGES) - ready
+        until(lambda: not missing() and self.states.lines() and self.place(), timeout_s)
+        if missing() or not self.place():
+            raise AssertionError(f"not ready: {missing()}\n{self.launch.tails()}\n"
+                                 f"{self.reports.err()}")
+
+    def place(self):
+        """Where the vehicle is, by the newest whole line of odometry."""
+        with open(self.odom.out_path, "rb") as file:
+            file.seek(0, os.SEEK_END)
+            file.seek(max(0, file.tell() - 20_000))
+            lines = file.read().split(b"\n")[:-1]
+        for line in reversed(lines):
+            if line.startswith(b"{") and line.endswith(b"}"):
+                return position_of(json.loads(line))
+        return None
+
+    def pub(self, topic, kind, message, *options, expect=0):
+        result = self.sandbox.goshawk("topic", "pub", topic, kind, json.dumps(message), "--once",
+                                      "--json", "--timeout", "10", *options, timeout_s=30)
+        if result.status != expect:
+            raise AssertionError(f"topic pub: {result}")
+        return result
+
+    def send_goal(self, goal):
+        self.pub("goal_pose", "geometry_msgs/msg/PoseStamped", goal_message(goal))
+
+    def wait_state(self, wanted, since, timeout_s):
+        """The first navigator state of these names after `since` states. @return it, or None"""
+        return until(lambda: next((s for s in self.states.lines()[since:]
+                                   if s["state"] in wanted), None), timeout_s)
+
+    def fly_to(self, goal, timeout_s=40.0):
+        since = len(self.states.lines())
+        self.send_goal(goal)
+        return self.wait_state({"arrived", "failed"}, since, timeout_s)
+
+    def track(self):
+        return [position_of(m) for m in self.odom.lines()]
+
+
+def position_of(odometry):
+    p = odometry["pose"]["pose"]["position"]
+    return (p["x"], p["y"], p["z"])
+
+
+def goal_message(goal, frame="map"):
+    x, y, z = goal
+    return {"header": {"frame_id": frame},
+            "pose": {"position": {"x": x, "y": y, "z": z}, "orientation": {"w": 1.0}}}
+
+
+class OccupiedCubes:
+    """The occupied cubes of an OctoMap .bt file, read here once more: an opinion that shares no
+    code with what it judges."""
+
+    DEPTH = 16
+
+    def __init__(self, path):
+        content = pathlib.Path(path).read_bytes()
+        head, self.bytes = content.split(b"\ndata\n", 1)
+        self.resolution = float(re.search(rb"\nres ([0-9.eE+-]+)", head).group(1))
+        self.at = 0
+        self.cubes = set()
+        self.read(0, (0, 0, 0))
+
+    def read(self, depth, key):
+        bits = int.from_bytes(self.bytes[self.at:self.at + 2], "little")
+        self.at += 2
+        size = 1 << (self.DEPTH - depth - 1)
+        inner = []
+        for child in range(8):
+            kind = bits >> (2 * child) & 3
+            corner = tuple(k + size * (child >> axis & 1) for axis, k in enumerate(key))
+            if kind == 3:
+                inner.append(corner)
+            elif kind == 2:
+                self.cubes.update((corner[0] + x, corner[1] + y, corner[2] + z)
+                                  for x in range(size) for y in range(size) for z in range(size))
+        for corner in inner:
+            self.read(depth + 1, corner)
+
+    def distance(self, point, most=0.6):
+        """[m] from the point to the nearest occupied cube, or `most`."""
+        r = self.resolution
+        key = [math.floor(p / r) + 32768 for p in point]
+        reach = math.ceil(most / r)
+        nearest = most
+        offsets = range(-reach, reach + 1)
+        for x in offsets:
+            for y in offsets:
+                for z in offsets:
+                    cube = (key[0] + x, key[1] + y, key[2] + z)
+                    if cube not in self.cubes:
+                        continue
+                    gap = [max((c - 32768) * r - p, p - (c - 32767) * r, 0.0)
+                           for c, p in zip(cube, point)]
+                    nearest = min(nearest, math.hypot(*gap))
+        return nearest
+
+
+def smallest_clearance(world, track, step_m=0.01):
+    """[m] from the track to the nearest obstacle: of the samples at least step_m apart."""
+    cubes = OccupiedCubes(world)
+    smallest, last = math.inf, None
+    for point in track:
+        if last is not None and math.dist(point, last) < step_m:
+            continue
+        last = point
+        smallest = min(smallest, cubes.distance(point))
+    return smallest
+
+
+class SystemTest(unittest.TestCase):
+    """A test with a sandbox of its own; nothing that it started may outlive it."""
+
+    maxDiff = None
+
+    def setUp(self):
+        self.sandbox = Sandbox()
+        self.addCleanup(self.close_sandbox)
+
+    def close_sandbox(self):
+        left = self.sandbox.close()
+        self.assertEqual(left, [], "processes outlived the test")
+
+    def json_object(self, outcome):
+        try:
+            value = json.loads(outcome.out)
+        except ValueError:
+            self.fail(f"no JSON object: {outcome}")
+        self.assertIsInstance(value, dict)
+        return value
+
+    def assert_civil(self, outcome):
+        """Ended by itself, with a sentence: no signal, no abort, no traceback."""
+        self.assertIn(outcome.status, (0, 1, 2), str(outcome))
+        for word in ("Traceback", "terminate called", "Segmentation", "Assertion", "what():",
+                     "internal fault", "AddressSanitizer"):
+            self.assertNotIn(word, outcome.out + outcome.err, str(outcome))
+
+
+class StackTest(unittest.TestCase):
+    """Tests of one launched stack that all methods share: what each does, the next must survive."""
+
+    launch_file = "flight"
+    ros_args = ()
+
+    @classmethod
+    def setUpClass(cls):
+        cls.sandbox = Sandbox()
+        try:
+            cls.stack = Stack(cls.sandbox, cls.launch_file, cls.ros_args)
+            cls.stack.wait_ready()
+        except BaseException:
+            cls.sandbox.close()
+            raise
+
+    @classmethod
+    def tearDownClass(cls):
+        left = cls.sandbox.close()
+        if left:
+            raise AssertionError(f"processes outlived the test: {left}")
+
+    json_object = SystemTest.json_object
+    assert_civil = SystemTest.assert_civil
+
+
+class Report(unittest.TextTestResult):
+    """Collects one <testcase> a test, and says how long each took."""
+
+    def __init__(self, *arguments, **keywords):
+        super().__init__(*arguments, **keywords)
+        self.suite = ElementTree.Element("testsuite", name="system")
+        self.begin = {}
+        self.good = 0
+
+    def startTest(self, test):
+        self.begin[test] = time.monotonic()
+        super().startTest(test)
+
+    def add(self, test, tag=None, text=""):
+        group, _, name = test.id().rpartition(".")
+        seconds = time.monotonic() - self.begin.get(test, time.monotonic())
+        case = ElementTree.SubElement(self.suite, "testcase", classname=group, name=name,
+                                      time=f"{seconds:.3f}")
+        if tag:
+            ElementTree.SubElement(case, tag, message=text.strip().split("\n")[-1]).text = text
+
+    def addSuccess(self, test):
+        super().addSuccess(test)
+        self.good += 1
+        self.add(test)
+
+    def addSkip(self, test, reason):
+        super().addSkip(test, reason)
+        print(f"SKIPPED {test.id()}: {reason}", file=sys.stderr)
+        self.add(test, "skipped", reason)
+
+    def addFailure(self, test, err):
+        super().addFailure(test, err)
+        self.add(test, "failure", self.failures[-1][1])
+
+    def addError(self, test, err):
+        super().addError(test, err)
+        self.add(test, "error", self.errors[-1][1])
+
+    def addSubTest(self, test, subtest, err):
+        super().addSubTest(test, subtest, err)
+        if err is not None:
+            self.add(subtest, "failure", (self.failures + self.errors)[-1][1])
+
+
+def note(text):
+    """A figure for whoever reads the log; never asserted."""
+    print(f"    {text}", file=sys.stderr, flush=True)
+
+
+def main():
+    if not os.access(GOSHAWK, os.X_OK):
+        sys.exit(f"{GOSHAWK} is not there: build first, or set GOSHAWK_PREFIX")
+    loader, module = unittest.defaultTestLoader, sys.modules["__main__"]
+    names = sys.argv[1:]
+    tests = loader.loadTestsFromNames(names, module) if names else loader.loadTestsFromModule(module)
+    result = unittest.TextTestRunner(resultclass=Report, verbosity=2).run(tests)
+    report = os.environ.get("GOSHAWK_REPORT")
+    if report:
+        pathlib.Path(report).parent.mkdir(parents=True, exist_ok=True)
+        ElementTree.ElementTree(result.suite).write(report, encoding="unicode")
+    if not result.wasSuccessful() or result.testsRun + len(result.skipped) == 0:
+        sys.exit(1)
+    sys.exit(0 if result.good else SKIPPED)

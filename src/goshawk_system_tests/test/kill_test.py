@@ -1,0 +1,256 @@
+#!/usr/bin/python3
+"""kill -9 of each stage during a flight, and the ways a launch ends."""
+
+import math
+import os
+import signal
+import time
+
+import harness
+from harness import GOSHAWK, StackTest, SystemTest, note, until
+
+# Free places of the default world, far from each other.
+PLACES = [(3.0, 0.0, 1.0), (3.0, 8.0, 2.0)]
+BETWEEN = (1.0, 6.0, 1.0)
+
+
+class KillNine(StackTest):
+    """One launched flight; each test kills one stage while the vehicle moves, then flies on."""
+
+    def farthest_place(self):
+        here = self.stack.place()
+        return max(PLACES, key=lambda p: math.dist(p, here))
+
+    def start_leg(self):
+        """Sends a goal; returns once the vehicle moves."""
+        goal, here = self.farthest_place(), self.stack.place()
+        since = len(self.stack.states.lines())
+        self.stack.send_goal(goal)
+        state = self.stack.wait_state({"flying", "failed"}, since, 15.0)
+        self.assertIsNotNone(state, "no answer to a goal\n" + self.stack.launch.tails())
+        self.assertEqual(state["state"], "flying", state)
+        moving = until(lambda: math.dist(self.stack.place(), here) > 0.5, 10.0)
+        self.assertTrue(moving, "the vehicle does not move")
+        return goal, since
+
+    def kill(self, stage):
+        before = self.stack.launch.pids()
+        restarts = len(self.stack.launch.events("restarted", stage))
+        os.kill(before[stage], signal.SIGKILL)
+        begin = time.monotonic()
+        told = until(lambda: len(self.stack.launch.events("restarted", stage)) > restarts, 15.0)
+        self.assertTrue(told, f"launch says nothing of {stage}\n{self.stack.launch.tails()}")
+        note(f"{stage}: launch reported the restart after {time.monotonic() - begin:.2f} s")
+        event = self.stack.launch.events("restarted", stage)[-1]
+        self.assertIn("SIGKILL", event["message"])
+        after = self.stack.launch.pids()
+        self.assertNotEqual(after[stage], before[stage])
+        self.assertEqual({s: p for s, p in after.items() if s != stage},
+                         {s: p for s, p in before.items() if s != stage})
+
+    def check_untouched(self):
+        clearance = harness.smallest_clearance(self.stack.world, self.stack.track(), 0.02)
+        note(f"smallest distance of the centre to an obstacle so far {clearance:.3f} m")
+        self.assertGreater(clearance, harness.BODY_RADIUS_M)
+
+    def fly_on(self):
+        """The next goal is reached, with all that was restarted; a stage may need a second."""
+        state = self.stack.fly_to(BETWEEN)
+        self.assertIsNotNone(state, "no answer to the next goal\n" + self.stack.launch.tails())
+        self.assertEqual(state["state"], "arrived", state)
+
+    def check_planning_stage(self, stage):
+        """What plans is not needed to finish a flight that is committed."""
+        _, since = self.start_leg()
+        self.kill(stage)
+        state = self.stack.wait_state({"arrived", "failed"}, since, 40.0)
+        self.assertIsNotNone(state, "the leg neither ends nor fails")
+        self.assertEqual(state["state"], "arrived", state)
+        self.fly_on()
+        self.check_untouched()
+
+    def test_1_path_search(self):
+        self.check_planning_stage("path_search")
+
+    def test_2_corridor_builder(self):
+        self.check_planning_stage("corridor_builder")
+
+    def test_3_trajectory_optimizer(self):
+        self.check_planning_stage("trajectory_optimizer")
+
+    def test_4_map_server(self):
+        self.check_planning_stage("map_server")
+
+    def test_5_navigator(self):
+        """The tracker finishes what is committed; the new navigator knows of no goal, says idle,
+        and takes the next one, from wherever the vehicle then is."""
+        goal, _ = self.start_leg()
+        self.kill("navigator")
+        there = until(lambda: math.dist(self.stack.place(), goal) < 0.1, 20.0)
+        self.assertTrue(there, "the tracker did not finish the committed trajectory")
+        self.fly_on()
+        self.check_untouched()
+
+    def test_6_navigator_and_a_goal_at_once(self):
+        """The vehicle still moves when the new navigator gets its goal: it may wait or plan from
+        the motion, but arrives."""
+        self.start_leg()
+        self.kill("navigator")
+        goal = min(PLACES, key=lambda p: math.dist(p, self.stack.place()))
+        state = self.stack.fly_to(goal)
+        self.assertIsNotNone(state)
+        self.assertEqual(state["state"], "arrived", state)
+        self.check_untouched()
+
+    def test_7_tracker(self):
+        """The vehicle's own failsafe brakes. The new tracker finds the vehicle elsewhere than the
+        trajectory is, refuses it, and the navigator plans anew: the goal is reached all the same."""
+        goal, since = self.start_leg()
+        self.kill("tracker")
+        state = self.stack.wait_state({"arrived", "failed"}, since, 40.0)
+        note(f"tracker killed: navigator said {[(s['state'], s['code']) for s in self.stack.states.lines()[since:]]}")
+        self.check_untouched()
+        self.assertIsNotNone(state, "the leg neither ends nor fails")
+        self.assertEqual(state["state"], "arrived", state)
+        self.assertLess(math.dist(self.stack.place(), goal), 0.1)
+        self.fly_on()
+        self.check_untouched()
+
+    def test_8_simulator(self):
+        """The vehicle itself is gone and comes back where it began: what was flown is over, and
+        the next goal is flown from there."""
+        self.start_leg()
+        since = len(self.stack.states.lines())
+        self.kill("simulator")
+        back = until(lambda: math.dist(self.stack.place(), PLACES[0]) < 0.3, 10.0)
+        self.assertTrue(back, "no odometry from the new simulator")
+        self.stack.wait_state({"arrived", "failed"}, since, 20.0)
+        note(f"simulator killed: navigator said {[(s['state'], s['code']) for s in self.stack.states.lines()[since:]]}")
+        self.fly_on()
+
+
+class LaunchEnds(SystemTest):
+    """Nothing is left behind, whatever ends a launch: the sandbox looks for survivors."""
+
+    def launch_running(self):
+        world = self.sandbox.folder / "world.bt"
+        self.assertEqual(self.sandbox.goshawk("world", world).status, 0)
+        launch = harness.Launch(self.sandbox, "flight", "-p", f"map_server:map_file:={world}")
+        self.assertTrue(until(lambda: len(launch.events("running")) == 7, 20.0), launch.tails())
+        return launch
+
+    def check_stop(self, number):
+        launch = self.launch_running()
+        pids = launch.pids()
+        status, seconds = launch.process.stop(number)
+        note(f"stopped by {number.name} in {seconds:.2f} s")
+        self.assertEqual(status, 0, launch.tails())
+        self.assertLess(seconds, 6.0)
+        self.assertEqual(launch.events()[-1]["event"], "stopped")
+        for pid in pids.values():
+            self.assertFalse(os.path.exists(f"/proc/{pid}"))
+
+    def test_sigint(self):
+        self.check_stop(signal.SIGINT)
+
+    def test_sigterm(self):
+        self.check_stop(signal.SIGTERM)
+
+    def test_a_killed_launch_takes_its_stages_with_it(self):
+        launch = self.launch_running()
+        launch.process.process.kill()
+        launch.process.wait(5.0)
+        gone = until(lambda: not harness.processes_of(self.sandbox.token), 10.0)
+        self.assertTrue(gone, [harness.command_of(p)
+                               for p in harness.processes_of(self.sandbox.token)])
+
+    def test_an_interrupted_fly_stops_everything(self):
+        fly = self.sandbox.start(GOSHAWK, "fly", "--json", "--output",
+                                 self.sandbox.folder / "flight")
+        flying = until(lambda: "flying" in fly.err(), 30.0)
+        self.assertTrue(flying, fly.err())
+        status, seconds = fly.stop(signal.SIGINT)
+        note(f"fly stopped by SIGINT in {seconds:.2f} s")
+        self.assertEqual(status, 1, str(fly.outcome()))
+        self.assertFalse(self.json_object(fly.outcome())["ok"])
+        self.assertEqual(harness.processes_of(self.sandbox.token), [])
+
+
+class LaunchFails(SystemTest):
+    def launch_file(self, text):
+        path = self.sandbox.folder / "test.yaml"
+        path.write_text(text)
+        return path
+
+    def launch(self, text, *arguments):
+        outcome = self.sandbox.goshawk("launch", self.launch_file(text), "--json", "--log-dir",
+                                       self.sandbox.folder / "logs", *arguments, timeout_s=60)
+        self.assert_civil(outcome)
+        return outcome
+
+    def test_wrong_parameters_stop_it_with_all_faults(self):
+        outcome = self.launch("stages:\n  - component: corridor_builder\n  - component: tracker\n"
+                              "    params: {mas_kg: 1.0, max_tilt_rad: -2, max_thrust_n: heavy}\n")
+        self.assertEqual(outcome.status, 2, str(outcome))
+        for word in ("tracker", "mas_kg", "mass_kg", "max_tilt_rad", "max_thrust_n"):
+            self.assertIn(word, outcome.out)
+
+    def test_a_stage_that_always_ends_is_given_up(self):
+        outcome = self.launch("stages:\n  - component: corridor_builder\n"
+                              "  - command: [/bin/false]\n    name: mine\n")
+        note(f"gave up after {outcome.seconds:.1f} s")
+        self.assertEqual(outcome.status, 1, str(outcome))
+        failed = [line for line in outcome.out.splitlines() if '"failed"' in line]
+        self.assertEqual(len(failed), 1, outcome.out)
+        self.assertIn("mine", failed[0])
+
+    def test_a_program_that_is_not_there_is_named(self):
+        outcome = self.launch("stages:\n  - command: [/no/such/program]\n    name: mine\n")
+        self.assertEqual(outcome.status, 1, str(outcome))
+        self.assertIn("mine", outcome.out)
+
+    def test_wrong_launch_files(self):
+        component = "stages: [{component: tracker}]\n"
+        for text, word in [("", "map of names"), ("[]", "map of names"), ("stages: []", "no stages"),
+                           ("stages: 5", "no stages"), ("stage: []", "did you mean stages"),
+                           ("stages: [{}]", "component or a command"),
+                           ("stages: [{component: tracker, command: [a]}]", "component or a command"),
+                           ("stages: [{component: tracker, parms: {}}]", "did you mean params"),
+                           ("stages: [{component: tracker, params: 3}]", "params"),
+                           ("stages: [{command: ls}]", "not a list"),
+                           ("stages: [{command: []}]", "command"),
+                           ("stages: [{component: tracker}, {component: tracker}]", "two stages"),
+                           ("stages: [{component: traker}]", "tracker"),
+                           ("stages: [5]", "stage 1"),
+                           ("stages: {", "not valid YAML"),
+                           ("a: !!python/object:os.system {}\n" + component, "not valid YAML"),
+                           (component + "domain: 999\n", "domain"),
+                           (component + "domain: five\n", "ROS_DOMAIN_ID"),
+                           (component + "params_files: none.yaml\n", "params_files"),
+                           (component + "params_files: [none.yaml]\n", "none.yaml"),
+                           (component + "namespace: 'a b'\n", "a b"),
+                           ("\x00", "YAML")]:
+            with self.subTest(file=text):
+                outcome = self.launch(text)
+                self.assertEqual(outcome.status, 2, str(outcome))
+                self.assertIn(word, outcome.out + outcome.err)
+
+    def test_missing_launch_files(self):
+        for name in ("flihgt", "/no/such/file.yaml", "/", "/dev/null"):
+            with self.subTest(file=name):
+                outcome = self.sandbox.goshawk("launch", name, timeout_s=20)
+                self.assert_civil(outcome)
+                self.assertEqual(outcome.status, 2, str(outcome))
+                self.assertIn(name, outcome.err)
+
+    def test_bytes_that_are_no_text(self):
+        path = self.sandbox.folder / "bad.yaml"
+        path.write_bytes(b"stages: \xff\xfe\x80")
+        outcome = self.sandbox.goshawk("launch", path, timeout_s=20)
+        self.assert_civil(outcome)
+        self.assertEqual(outcome.status, 2, str(outcome))
+        self.assertIn("bad.yaml", outcome.err)
+
+
+if __name__ == "__main__":
+    harness.main()

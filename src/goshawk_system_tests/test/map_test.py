@@ -1,0 +1,188 @@
+#!/usr/bin/python3
+"""The map server alone: a map that grows with scans, and a very large one."""
+
+import json
+import math
+import os
+import pathlib
+import struct
+import time
+
+import harness
+from harness import GOSHAWK, SystemTest, note, until
+
+BRICK = (64, 8, 8)  # voxels
+
+
+def cloud(points, frame="map", **changes):
+    """A PointCloud2 of float32 x, y, z."""
+    data = b"".join(struct.pack("<fff", *p) for p in points)
+    fields = [{"name": n, "offset": 4 * k, "datatype": 7, "count": 1} for k, n in enumerate("xyz")]
+    return {"header": {"frame_id": frame}, "height": 1, "width": len(points), "fields": fields,
+            "is_bigendian": False, "point_step": 12, "row_step": 12 * len(points),
+            "data": list(data), "is_dense": True, **changes}
+
+
+def odometry(position, frame="map", child="base_link"):
+    x, y, z = position
+    return {"header": {"frame_id": frame}, "child_frame_id": child,
+            "pose": {"pose": {"position": {"x": x, "y": y, "z": z}, "orientation": {"w": 1.0}}}}
+
+
+def bits_of(words, row, x):
+    """Bit x of a row of words; words may be numbers or their decimal texts."""
+    return int(words[row]) >> x & 1
+
+
+class MapCase(SystemTest):
+    def pub(self, topic, kind, message, *options):
+        outcome = self.sandbox.goshawk("topic", "pub", topic, kind, json.dumps(message), "--once",
+                                       "--json", "--timeout", "10", *options, timeout_s=30)
+        self.assertEqual(outcome.status, 0, str(outcome))
+
+    def echo(self, topic, *options):
+        return self.sandbox.start(GOSHAWK, "topic", "echo", topic, "--json", *options)
+
+    def wait_line(self, process, condition=lambda _: True, timeout_s=20.0):
+        found = until(lambda: next((m for m in process.lines() if condition(m)), None), timeout_s)
+        self.assertIsNotNone(found, str(process.outcome()))
+        return found
+
+    def run_server(self, *parameters):
+        options = [word for p in parameters for word in ("-p", p)]
+        server = self.sandbox.start(GOSHAWK, "run", "map_server", "--ros-args", *options)
+        reports = self.echo("stage_report")
+        self.wait_line(reports, lambda r: r["code"] == "ok" and r["stage"] == "map_server", 60.0)
+        return server, reports
+
+
+class LiveMap(MapCase):
+    def test_a_scan_changes_bricks_and_the_next_version(self):
+        server, reports = self.run_server(
+            "use_box:=true", "unknown:=occupied", "resolution_m:=0.2", "radius_m:=0.0",
+            "margin_m:=0.0", "box_x_max_m:=10.0", "box_y_max_m:=10.0", "box_z_max_m:=4.0")
+        updates = self.echo("map/voxels/updates")
+        first = self.wait_line(self.echo("map/voxels", "--once"))
+        size = (first["size_x"], first["size_y"], first["size_z"])
+        self.assertEqual(size, (50, 50, 20))
+        self.assertTrue(all(int(w) == 0 for w in first["known"]), "something is known already")
+
+        # A cloud before any odometry has no sensor: it is refused, and the map stays.
+        self.pub("cloud_in", "sensor_msgs/msg/PointCloud2", cloud([(6.1, 5.1, 2.1)]))
+        self.wait_line(reports, lambda r: r["code"] == "tracking_lost")
+        self.pub("odom", "nav_msgs/msg/Odometry", odometry((5.1, 5.1, 2.1)))
+        time.sleep(0.3)
+        self.pub("cloud_in", "sensor_msgs/msg/PointCloud2", cloud([(8.1, 5.1, 2.1)]))
+        update = self.wait_line(updates)
+        self.assertEqual(update["from_version"], first["version"])
+        self.assertEqual(update["to_version"], first["version"] + 1)
+        self.check_ray(update["bricks"], first["origin"])
+
+        # In the body's frame, the same wall from elsewhere.
+        self.pub("odom", "nav_msgs/msg/Odometry", odometry((5.1, 3.1, 2.1)))
+        time.sleep(0.3)
+        self.pub("cloud_in", "sensor_msgs/msg/PointCloud2", cloud([(3.0, 0.0, 0.0)], "base_link"))
+        second = self.wait_line(updates, lambda u: u["to_version"] == first["version"] + 2)
+        self.assertEqual(self.state(second["bricks"], first["origin"], (8.1, 3.1, 2.1)),
+                         "occupied")
+
+        # Whoever comes late gets the whole of it within a second or two.
+        late = until(lambda: self.late_version() >= second["to_version"], 15.0, 0.5)
+        self.assertTrue(late, "the latched map stays old")
+        self.assertTrue(server.alive())
+        self.check_bad_clouds(server, reports)
+
+    def late_version(self):
+        outcome = self.sandbox.goshawk("topic", "echo", "map/voxels", "--once", "--json",
+                                       "--no-arr", "--timeout", "10", timeout_s=30)
+        return json.loads(outcome.out)["version"]
+
+    def state(self, bricks, origin, point, resolution=0.2):
+        voxel = [math.floor((p - origin[a]) / resolution) for p, a in zip(point, "xyz")]
+        for brick in bricks:
+            at = [v - n * b for v, n, b in
+                  zip(voxel, BRICK, (brick["word_x"], brick["brick_y"], brick["brick_z"]))]
+            if all(0 <= a < n for a, n in zip(at, BRICK)):
+                row = 8 * at[2] + at[1]
+                if not bits_of(brick["known"], row, at[0]):
+                    return "unknown"
+                return "occupied" if bits_of(brick["occupied"], row, at[0]) else "free"
+        return "unchanged"
+
+    def check_ray(self, bricks, origin):
+        self.assertEqual(self.state(bricks, origin, (8.1, 5.1, 2.1)), "occupied")
+        for x in (5.3, 6.1, 7.7):
+            self.assertEqual(self.state(bricks, origin, (x, 5.1, 2.1)), "free")
+        for point in ((9.1, 5.1, 2.1), (6.1, 6.1, 2.1)):
+            self.assertEqual(self.state(bricks, origin, point), "unknown")
+
+    def check_bad_clouds(self, server, reports):
+        """Each is refused with a sentence, and the server lives."""
+        good = [(7.1, 5.1, 2.1)]
+        for bad, code in [(cloud(good, frame="camera"), "wrong_frame"),
+                          (cloud(good, width=1000), "invalid_input"),
+                          (cloud(good, width=1000, row_step=0), "invalid_input"),
+                          (cloud(good, height=4_000_000_000), "invalid_input"),
+                          (cloud(good, point_step=2), "invalid_input"),
+                          (cloud(good, fields=[]), "invalid_input"),
+                          (cloud(good, is_bigendian=True), "invalid_input")]:
+            since = len(reports.lines())
+            self.pub("cloud_in", "sensor_msgs/msg/PointCloud2", bad)
+            told = until(lambda: [r["code"] for r in reports.lines()[since:]], 5.0)
+            self.assertEqual(told, [code], f"{bad}")
+        self.pub("cloud_in", "sensor_msgs/msg/PointCloud2",
+                 cloud([], width=0, height=4_000_000_000, row_step=0))
+        self.pub("cloud_in", "sensor_msgs/msg/PointCloud2", cloud([(math.nan,) * 3]))
+        before = self.late_version()
+        self.pub("cloud_in", "sensor_msgs/msg/PointCloud2", cloud(good))
+        newer = until(lambda: self.late_version() > before, 15.0, 0.5)
+        self.assertTrue(newer, "after bad clouds no good one is taken")
+        self.assertTrue(server.alive())
+
+
+class BigMap(MapCase):
+    def memory(self, pid):
+        """[MB] resident now, and at most so far."""
+        text = pathlib.Path(f"/proc/{pid}/status").read_text()
+        values = dict(line.split(":", 1) for line in text.splitlines())
+        return tuple(int(values[k].split()[0]) / 1024 for k in ("VmRSS", "VmHWM"))
+
+    def test_a_hundred_million_voxels_reach_a_late_joiner(self):
+        world = self.sandbox.folder / "big.bt"
+        made = self.sandbox.goshawk("world", world, "--kind", "forest", "--size", "100,100,10",
+                                    "--resolution", "0.1", "--density", "0.02", "--json",
+                                    timeout_s=120)
+        self.assertEqual(made.status, 0, str(made))
+        size = self.json_object(made)["size_voxels"]
+        self.assertEqual(size, [1000, 1000, 100])
+        # What OctoMap's tree and the process itself take: the same server on the same file, but
+        # with the grid cut to a small box.
+        small, reports = self.run_server(f"map_file:={world}", "use_box:=true", "box_x_max_m:=1.0",
+                                         "box_y_max_m:=1.0", "box_z_max_m:=1.0")
+        tree_mb, _ = self.memory(small.pid)
+        small.stop()
+        reports.stop()
+
+        begin = time.monotonic()
+        server, _ = self.run_server(f"map_file:={world}")
+        ready_s = time.monotonic() - begin
+        begin = time.monotonic()
+        outcome = self.sandbox.goshawk("topic", "echo", "map/voxels", "--once", "--no-arr",
+                                       "--json", "--timeout", "30", timeout_s=60)
+        self.assertEqual(outcome.status, 0, str(outcome))
+        late_s = time.monotonic() - begin
+        grid = json.loads(outcome.out)
+        self.assertEqual([grid["size_x"], grid["size_y"], grid["size_z"]], size)
+        resident_mb, peak_mb = self.memory(server.pid)
+        words = 16 * 1000 * 100
+        packed_mb = 2 * words * 8 / 2**20  # occupied and known
+        note(f"world made in {made.seconds:.1f} s; ready after {ready_s:.1f} s; late joiner after "
+             f"{late_s:.2f} s; resident {resident_mb:.0f} MB (at most {peak_mb:.0f}), of that "
+             f"tree and process {tree_mb:.0f} MB; bit-packed {packed_mb:.1f} MB: "
+             f"{(resident_mb - tree_mb) / packed_mb:.2f} times")
+        self.assertLess(resident_mb - tree_mb, 3 * packed_mb)
+        self.assertTrue(server.alive())
+
+
+if __name__ == "__main__":
+    harness.main()
