@@ -12,6 +12,7 @@ A launch file (docs/launch.md):
         node: path_search       # optional, its node's name
         params: {planner: astar}
         remap: {path: my_path}
+        realtime: 10            # optional: priority 1 to 99, where the system permits it
       - command: [./my_search]  # ... or a program of your own
         name: my_search
 """
@@ -34,7 +35,7 @@ from supervisor.xmlrpc import SupervisorTransport
 
 DONE, NOT_DONE, WRONG_CALL = 0, 1, 2
 FILE_KEYS = {"namespace", "domain", "container", "params_files", "stages"}
-STAGE_KEYS = {"component", "node", "params", "remap", "command", "name"}
+STAGE_KEYS = {"component", "node", "params", "remap", "command", "name", "realtime"}
 RETRIES = 5
 
 
@@ -77,11 +78,31 @@ def read_launch_file(path):
         for key in ("params", "remap"):
             if not isinstance(stage.get(key, {}), dict):
                 raise WrongCall(f"{where}: {key} is not a map of names to values")
+        priority = stage.get("realtime", 1)
+        if not isinstance(priority, int) or not 1 <= priority <= 99:
+            raise WrongCall(f"{where}: realtime is {priority!r}: a priority from 1 to 99 is meant")
     return content
+
+
+def realtime_is_permitted():
+    """Whether this user may give processes real-time priority: tried on this one, and undone."""
+    before = os.sched_getscheduler(0), os.sched_getparam(0)
+    try:
+        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(1))
+    except OSError:
+        return False
+    os.sched_setscheduler(0, *before)
+    return True
 
 
 def scalar(value):
     return str(value).lower() if isinstance(value, bool) else str(value)
+
+
+def with_priority(stage, command):
+    if "realtime" not in stage or not realtime_is_permitted():
+        return command
+    return ["/usr/bin/chrt", "--fifo", str(stage["realtime"]), *command]
 
 
 class Plan:
@@ -100,13 +121,14 @@ class Plan:
             self.add("container", self.component_command(components))
         else:
             for stage in components:
-                self.add(stage.get("node", stage["component"]), self.component_command([stage]))
+                self.add(stage.get("node", stage["component"]),
+                         with_priority(stage, self.component_command([stage])))
         for stage in commands:
             name = stage.get("name", os.path.basename(stage["command"][0]))
             first = stage["command"][0]
             if "/" in first:
                 first = self.beside(first)
-            self.add(name, [first] + [scalar(a) for a in stage["command"][1:]])
+            self.add(name, with_priority(stage, [first, *map(scalar, stage["command"][1:])]))
 
     def beside(self, path):
         return os.path.normpath(os.path.join(self.folder, path))

@@ -73,7 +73,7 @@ class GoodPlan(CallsCase):
             self.assertLessEqual(value, 1e-6, family)
 
     def test_its_control_points_lie_in_their_polytopes(self):
-        plan = self.json_object(self.sandbox.goshawk("plan", "--json", "--goal", "1,6,1"))
+        plan = self.json_object(self.sandbox.goshawk("plan", "--json", "--goal", "3.5,6.1,1.1"))
         polytopes = plan["corridor"]["polytopes"]
         for piece in plan["trajectory"]["pieces"]:
             p = polytopes[piece["polytope"]]

@@ -127,10 +127,10 @@ class DefaultFlight(FlightCase):
 
 class ContainerFlight(FlightCase):
     def test_one_process_flies_a_tour_of_two_goals(self):
-        flight, folder = self.fly("--launch", "flight_container", "--goal", "1,6,1", "--goal",
-                                  "3,8,2")
+        flight, folder = self.fly("--launch", "flight_container", "--goal", "3.5,6.1,1.1",
+                                  "--goal", "3,8,2")
         self.check_safe(flight, legs=2)
-        self.assertEqual([leg["goal"] for leg in flight["legs"]], [[1, 6, 1], [3, 8, 2]])
+        self.assertEqual([leg["goal"] for leg in flight["legs"]], [[3.5, 6.1, 1.1], [3, 8, 2]])
         self.check_files(folder, flight)
         self.check_tables(folder, flight)
         self.assertEqual(set(harness.spawned(folder / "logs")), {"container"})

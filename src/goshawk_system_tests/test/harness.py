@@ -302,8 +302,8 @@ class Stack:
         return None
 
     def pub(self, topic, kind, message, *options, expect=0):
-        result = self.sandbox.goshawk("topic", "pub", topic, kind, json.dumps(message), "--once",
-                                      "--json", "--timeout", "10", *options, timeout_s=30)
+        result = self.sandbox.goshawk("topic", "pub", topic, kind, json.dumps(message), "--json",
+                                      "--timeout", "10", *(options or ["--once"]), timeout_s=30)
         if result.status != expect:
             raise AssertionError(f"topic pub: {result}")
         return result

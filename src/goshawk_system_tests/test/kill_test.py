@@ -11,7 +11,7 @@ from harness import GOSHAWK, StackTest, SystemTest, note, until
 
 # Free places of the default world, far from each other.
 PLACES = [(3.0, 0.0, 1.0), (3.0, 8.0, 2.0)]
-BETWEEN = (1.0, 6.0, 1.0)
+BETWEEN = (3.5, 6.1, 1.1)
 
 
 class KillNine(StackTest):
