@@ -94,16 +94,16 @@ Result<Tour> make_tour(const FlyOptions& o, const PlanningConfig& config, const 
   }
   const bool made = o.map.map.empty();
   if (!made && (o.start.empty() || o.goals.empty())) {
-    return fail(ErrorCode::invalid_input,
+    return fail(ErrorCode::invalid_parameter,
                 "a map of your own needs --start x,y,z and --goal x,y,z, or --random N");
   }
   Tour tour;
   auto start = parse_point(o.start.empty() ? "3,0,1" : o.start);
-  if (!start) return start.error();
+  if (!start) return fail(ErrorCode::invalid_parameter, "--start: " + start.error().message);
   tour.start_map = *start;
   for (const auto& text : o.goals.empty() ? std::vector<std::string>{"3,8,2"} : o.goals) {
     auto goal = parse_point(text);
-    if (!goal) return goal.error();
+    if (!goal) return fail(ErrorCode::invalid_parameter, "--goal: " + goal.error().message);
     tour.goals_map.push_back(*goal);
   }
   // A vehicle that stands in a wall cannot even hover: that is said before anything starts.

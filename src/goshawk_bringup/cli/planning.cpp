@@ -1,6 +1,7 @@
 #include "planning.hpp"
 
 #include "goshawk/map_server/map_file.hpp"
+#include "goshawk/runtime/component.hpp"
 #include "goshawk/runtime/stage.hpp"
 
 namespace goshawk::cli {
@@ -32,6 +33,10 @@ Result<PlanningConfig> PlanningConfig::read(const runtime::RosArgs& args) {
   const auto note = [&](const Status& status) {
     if (!status) faults += (faults.empty() ? "" : "\n") + status.error().message;
   };
+  for (const auto& file : args.params_files) {
+    note(runtime::check_sections(file, runtime::installed_components()));
+  }
+  if (!faults.empty()) return fail(ErrorCode::invalid_parameter, faults);
   note(read_into(c.map, args, "map_server"));
   note(read_into(c.search, args, "path_search"));
   note(read_into(c.corridor, args, "corridor_builder"));

@@ -5,7 +5,7 @@
 #   goshawk_component(NAME CLASS SOURCES LINK ...)   a component, loadable by goshawk_container
 #   goshawk_executable(NAME SOURCES LINK ...)        a program, installed to bin/
 #   goshawk_test(NAME SOURCES LINK ...)              a GoogleTest program, one file of results each
-#   goshawk_benchmark(NAME SOURCES LINK ...)         a Google Benchmark program
+#   goshawk_benchmark(NAME SOURCES LINK ...)         a Google Benchmark program, built with the tests
 #   goshawk_package_install(DEPENDENCIES ...)        last: headers, config/, targets, CMake package
 
 set(GOSHAWK_CMAKE_DIR "${CMAKE_CURRENT_LIST_DIR}")
@@ -119,6 +119,9 @@ endfunction()
 
 function(goshawk_benchmark)
   cmake_parse_arguments(arg "" "NAME" "SOURCES;LINK" ${ARGN})
+  if(NOT BUILD_TESTING)
+    return()
+  endif()
   find_package(benchmark REQUIRED)
   add_executable(${arg_NAME} ${arg_SOURCES})
   target_link_libraries(${arg_NAME} PRIVATE ${arg_LINK} benchmark::benchmark)

@@ -77,6 +77,26 @@ Status ParameterSource::add_file(const std::string& path, std::string_view node_
   return success();
 }
 
+Status check_sections(const std::string& params_file, const std::vector<std::string>& known) {
+  std::string faults;
+  try {
+    for (const auto& section : YAML::LoadFile(params_file)) {
+      const std::string name = section.first.as<std::string>();
+      const std::string node = name.substr(name.rfind('/') + 1);
+      if (name == "/**" || std::ranges::find(known, node) != known.end()) continue;
+      const std::string near = nearest_name(node, known);
+      faults += "\n  " + name + ": no such node" +
+                (near.empty() ? "" : "; did you mean " + near + "?");
+    }
+  } catch (const YAML::BadFile&) {
+    return fail(ErrorCode::io_failed, params_file + " cannot be read: does it exist?");
+  } catch (const YAML::Exception& e) {
+    return fail(ErrorCode::invalid_parameter, params_file + " is not valid YAML: " + e.what());
+  }
+  if (faults.empty()) return success();
+  return fail(ErrorCode::invalid_parameter, params_file + " has sections for nobody:" + faults);
+}
+
 std::string nearest_name(std::string_view wrong, const std::vector<std::string>& known) {
   std::string best;
   std::size_t least = std::max<std::size_t>(3, wrong.size() / 2 + 1);

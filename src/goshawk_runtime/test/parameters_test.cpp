@@ -118,6 +118,19 @@ TEST(Parameters, TakesTheSectionsMeantForTheNode) {
   EXPECT_EQ(read(yaml, "other", "/")->count, 1);
 }
 
+TEST(Parameters, ASectionForANodeThatNobodyKnowsIsNamed) {
+  const std::vector<std::string> known{"search", "tracker"};
+  const File good("/**:\n  ros__parameters: {}\n/uav1/search:\n  ros__parameters: {}\n");
+  EXPECT_TRUE(check_sections(good.path(), known));
+  const File bad("serch:\n  ros__parameters: {}\ntracker:\n  ros__parameters: {}\n");
+  const auto status = check_sections(bad.path(), known);
+  EXPECT_EQ(status.code(), ErrorCode::invalid_parameter);
+  EXPECT_THAT(status.error().message,
+              AllOf(HasSubstr("serch: no such node; did you mean search?"),
+                    Not(HasSubstr("tracker"))));
+  EXPECT_EQ(check_sections("/no/such/file.yaml", known).code(), ErrorCode::io_failed);
+}
+
 TEST(Parameters, RefusesFilesOfAnotherForm) {
   EXPECT_THAT(read("search: {count: 1}").error().message, HasSubstr("ros__parameters"));
   EXPECT_THAT(read("- 1").error().message, HasSubstr("is not a map"));

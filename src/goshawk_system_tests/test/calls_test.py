@@ -185,7 +185,7 @@ class BadMaps(CallsCase):
         full = self.file("full.pcd", ascii_pcd(points))
         self.plan_on(full, "map_empty")
         self.expect(["fly", "--map", full, "--random", "1", "--output",
-                     self.sandbox.folder / "flight"], NOT_DONE, "map_empty")
+                     self.sandbox.folder / "out"], NOT_DONE, "map_empty")
 
     def test_truth_the_same_cloud_in_two_formats_is_a_map(self):
         points = [(0, 0, 0), (5, 5, 3)]
@@ -197,7 +197,7 @@ class BadMaps(CallsCase):
     def test_the_other_verbs_say_the_same(self):
         noise = self.file("noise.bt", b"noise")
         self.expect(["fly", "--map", noise, "--random", "1", "--output",
-                     self.sandbox.folder / "flight"], NOT_DONE, "map_malformed", "noise.bt")
+                     self.sandbox.folder / "out"], NOT_DONE, "map_malformed", "noise.bt")
         self.expect(["world", self.sandbox.folder / "out.bt", "--convert", noise], NOT_DONE,
                     "map_malformed", "noise.bt")
         self.expect(["world", self.sandbox.folder / "out.bt", "--convert", "/no/such.pcd"],
@@ -229,7 +229,7 @@ class BadPoints(CallsCase):
             for text in ("1,2", "1,2,3,4", "a,b,c", "1,2,3m", " ", "1, 2, 3"):
                 self.expect(["plan", f"{option}={text}"], WRONG_CALL, "invalid_input")
                 self.expect(["fly", f"{option}={text}", "--output",
-                             self.sandbox.folder / "flight"], WRONG_CALL, "invalid_input")
+                             self.sandbox.folder / "out"], WRONG_CALL, "invalid_input")
 
     def test_points_never_measured(self):
         map_file = harness.data_file(self, "octomap/geb079.bt")
@@ -248,17 +248,17 @@ class BadPoints(CallsCase):
         self.assertIsNone(answer["path"])
         self.assertEqual(set(answer), PLAN_KEYS)
         self.expect(["fly", "--map", plate, "--start", "2,2,1", "--output",
-                     self.sandbox.folder / "flight"], WRONG_CALL, "invalid_input", "--goal")
+                     self.sandbox.folder / "out"], WRONG_CALL, "invalid_input", "--goal")
 
     def test_fly_refuses_a_start_in_a_wall_before_anything_starts(self):
         answer = self.expect(["fly", f"--start={self.occupied_point()}", "--output",
-                              self.sandbox.folder / "flight"], NOT_DONE, "start_occupied")
+                              self.sandbox.folder / "out"], NOT_DONE, "start_occupied")
         self.assertNotIn("legs", answer)
 
 
 class BadNumbers(CallsCase):
     def test_limits(self):
-        fly = ["--output", self.sandbox.folder / "flight"]
+        fly = ["--output", self.sandbox.folder / "out"]
         for option in ("--v-max", "--a-max"):
             for value in ("0", "-1", "nan", "inf", "-inf"):
                 self.expect(["plan", f"{option}={value}"], NOT_DONE, "invalid_limits")
@@ -326,7 +326,7 @@ class BadNumbers(CallsCase):
 
     def test_a_density_that_is_no_number_is_refused_by_fly(self):
         for value in ("x", "0.4x", "2", "nan"):
-            self.expect(["fly", f"--density={value}", "--output", self.sandbox.folder / "flight"],
+            self.expect(["fly", f"--density={value}", "--output", self.sandbox.folder / "out"],
                         WRONG_CALL, "invalid_parameter", "density")
 
 
@@ -371,7 +371,7 @@ class BadCalls(CallsCase):
         self.assertEqual(self.sandbox.goshawk("--help").status, DONE)
 
     def test_numbers_of_fly(self):
-        fly = ["--output", self.sandbox.folder / "flight"]
+        fly = ["--output", self.sandbox.folder / "out"]
         self.expect(["fly", "--random=-1", *fly], WRONG_CALL, "invalid_parameter", "random")
         self.expect(["fly", "--timeout=0", *fly], WRONG_CALL, "invalid_parameter", "timeout")
         self.expect(["fly", "--timeout=nan", *fly], WRONG_CALL, "invalid_parameter", "timeout")
@@ -395,7 +395,7 @@ class BadCalls(CallsCase):
                             ("ROS_DOMAIN_ID", "-1"), ("GOSHAWK_INTERFACES", "1.2.3.4"),
                             ("GOSHAWK_INTERFACES", "nonsense")):
             for command in (["run", "tracker"], ["topic", "list"], ["node", "list"],
-                            ["fly", "--output", self.sandbox.folder / "flight"]):
+                            ["fly", "--output", self.sandbox.folder / "out"]):
                 with self.subTest(name=name, value=value, command=command[0]):
                     outcome = self.sandbox.goshawk(*command, env={name: value}, timeout_s=20)
                     self.assert_civil(outcome)

@@ -38,7 +38,7 @@ def length(row, prefix, unit):
 
 class FlightCase(SystemTest):
     def fly(self, *arguments, timeout_s=90.0):
-        folder = self.sandbox.folder / "flight"
+        folder = self.sandbox.folder / "out"
         outcome = self.sandbox.goshawk("fly", "--json", "--output", folder, *arguments,
                                        timeout_s=timeout_s)
         self.assertEqual(outcome.status, 0, str(outcome) + self.log_tails(folder))
@@ -147,7 +147,7 @@ class RealMapFlight(FlightCase):
 
 class FlightThatFails(FlightCase):
     def test_a_goal_that_cannot_be_reached_ends_with_its_reason(self):
-        folder = self.sandbox.folder / "flight"
+        folder = self.sandbox.folder / "out"
         outcome = self.sandbox.goshawk("fly", "--json", "--output", folder, "--goal", "3,8,2",
                                        "--goal", "100,0,0", timeout_s=60)
         self.assertEqual(outcome.status, 1, str(outcome))

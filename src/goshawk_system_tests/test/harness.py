@@ -322,7 +322,9 @@ class Stack:
         return self.wait_state({"arrived", "failed"}, since, timeout_s)
 
     def track(self):
-        return [position_of(m) for m in self.odom.lines()]
+        """Where the vehicle was. What a test sent as odometry that is no number is left out."""
+        points = [position_of(m) for m in self.odom.lines()]
+        return [p for p in points if all(isinstance(x, float) for x in p)]
 
 
 def position_of(odometry):

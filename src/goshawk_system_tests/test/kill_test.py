@@ -166,14 +166,25 @@ class LaunchEnds(SystemTest):
 
     def test_an_interrupted_fly_stops_everything(self):
         fly = self.sandbox.start(GOSHAWK, "fly", "--json", "--output",
-                                 self.sandbox.folder / "flight")
-        flying = until(lambda: "flying" in fly.err(), 30.0)
-        self.assertTrue(flying, fly.err())
+                                 self.sandbox.folder / "out")
+        flying = until(lambda: "flying" in fly.err() or not fly.alive(), 30.0)
+        self.assertTrue(flying and fly.alive(), str(fly.outcome()))
         status, seconds = fly.stop(signal.SIGINT)
         note(f"fly stopped by SIGINT in {seconds:.2f} s")
         self.assertEqual(status, 1, str(fly.outcome()))
         self.assertFalse(self.json_object(fly.outcome())["ok"])
         self.assertEqual(harness.processes_of(self.sandbox.token), [])
+
+
+    def test_a_killed_fly_takes_everything_with_it(self):
+        fly = self.sandbox.start(GOSHAWK, "fly", "--output", self.sandbox.folder / "out")
+        self.assertTrue(until(lambda: "flying" in fly.err() or not fly.alive(), 30.0))
+        self.assertTrue(fly.alive(), str(fly.outcome()))
+        fly.process.kill()
+        fly.wait(5.0)
+        gone = until(lambda: not harness.processes_of(self.sandbox.token), 10.0)
+        self.assertTrue(gone, [harness.command_of(p)
+                               for p in harness.processes_of(self.sandbox.token)])
 
 
 class LaunchFails(SystemTest):
@@ -224,9 +235,9 @@ class LaunchFails(SystemTest):
                            ("stages: [5]", "stage 1"),
                            ("stages: {", "not valid YAML"),
                            ("a: !!python/object:os.system {}\n" + component, "not valid YAML"),
-                           (component + "domain: 999\n", "domain"),
-                           (component + "domain: five\n", "ROS_DOMAIN_ID"),
-                           (component + "params_files: none.yaml\n", "params_files"),
+                           (component + "domain: 999\n", "999"),
+                           (component + "domain: five\n", "five"),
+                           (component + "params_files: none.yaml\n", "none.yaml"),
                            (component + "params_files: [none.yaml]\n", "none.yaml"),
                            (component + "namespace: 'a b'\n", "a b"),
                            ("\x00", "YAML")]:
@@ -242,6 +253,13 @@ class LaunchFails(SystemTest):
                 self.assert_civil(outcome)
                 self.assertEqual(outcome.status, 2, str(outcome))
                 self.assertIn(name, outcome.err)
+
+    def test_a_folder_of_its_name_does_not_hide_an_installed_file(self):
+        (self.sandbox.folder / "flight").mkdir()
+        world = self.sandbox.folder / "world.bt"
+        self.assertEqual(self.sandbox.goshawk("world", world).status, 0)
+        launch = harness.Launch(self.sandbox, "flight", "-p", f"map_server:map_file:={world}")
+        self.assertTrue(until(lambda: launch.events("running"), 15.0), launch.tails())
 
     def test_bytes_that_are_no_text(self):
         path = self.sandbox.folder / "bad.yaml"

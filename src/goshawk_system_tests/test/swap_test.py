@@ -9,7 +9,7 @@ from harness import StackTest, SystemTest, note
 
 class CycloneSearch(SystemTest):
     def test_a_flight_with_a_search_stage_of_another_vendor_is_safe(self):
-        folder = self.sandbox.folder / "flight"
+        folder = self.sandbox.folder / "out"
         outcome = self.sandbox.goshawk("fly", "--json", "--launch", "cyclone_search", "--output",
                                        folder, timeout_s=90)
         logs = "".join(p.read_text(errors="replace")[-500:]

@@ -36,6 +36,11 @@ class ParameterSource {
   std::map<std::string, Entry> entries_;
 };
 
+/// A section for a node that nobody knows is a typing error, and its parameters would be lost.
+/// @param known names of nodes, without namespace
+/// @return invalid_parameter that names each such section and the nearest name; io_failed
+Status check_sections(const std::string& params_file, const std::vector<std::string>& known);
+
 /// One parameter as documented: for `goshawk param describe` and docs/parameters.md.
 struct ParameterDescription {
   std::string name;
