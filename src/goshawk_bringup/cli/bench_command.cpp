@@ -54,10 +54,9 @@ class PlanTimer {
           sample_.total_ns = info.received_ns - request_.stamp_ns;
           final_wire_ns_ = info.received_ns - conversions::to_ns(m.header().stamp());
         });
-    node.subscribe<msg::StageReport>("stage_report", Qos::latched(100),
-                                     [this](const msg::StageReport& m, const MessageInfo&) {
-                                       on_report(m);
-                                     });
+    node.subscribe<msg::StageReport>(
+        "stage_report", Qos::latched(100),
+        [this](const msg::StageReport& m, const MessageInfo&) { on_report(m); });
   }
 
   bool stages_ready() const {
@@ -78,8 +77,8 @@ class PlanTimer {
     }
     if (failure_) return *failure_;
     if (sample_.total_ns == 0) {
-      return fail(ErrorCode::stage_silent, "no trajectory came within " +
-                                               std::to_string(timeout_s) + " s");
+      return fail(ErrorCode::stage_silent,
+                  "no trajectory came within " + std::to_string(timeout_s) + " s");
     }
     sample_.stages["reply"] = {0, final_wire_ns_};
     return sample_;
@@ -138,12 +137,17 @@ Json to_json(const std::vector<Sample>& samples, const Options& o) {
       compute.push_back(found->second.first);
       wire.push_back(found->second.second);
     }
-    stages.push_back({{"name", name}, {"compute", percentiles(compute)}, {"wire", percentiles(wire)}});
+    stages.push_back(
+        {{"name", name}, {"compute", percentiles(compute)}, {"wire", percentiles(wire)}});
   }
-  return {{"ok", true},           {"code", "ok"},
-          {"message", ""},        {"launch", o.launch},
-          {"plans", samples.size()}, {"total", percentiles(totals)},
-          {"not_compute", percentiles(wires)}, {"stages", stages}};
+  return {{"ok", true},
+          {"code", "ok"},
+          {"message", ""},
+          {"launch", o.launch},
+          {"plans", samples.size()},
+          {"total", percentiles(totals)},
+          {"not_compute", percentiles(wires)},
+          {"stages", stages}};
 }
 
 void print(const Json& result) {
@@ -202,7 +206,8 @@ Result<std::vector<Sample>> measure(const Options& o, const std::string& map_fil
 int run(const Options& o) {
   const auto start = parse_point(o.start);
   const auto goal = parse_point(o.goal);
-  if (!start || !goal) return report_failure(start ? goal.error() : start.error(), o.json, kWrongCall);
+  if (!start || !goal)
+    return report_failure(start ? goal.error() : start.error(), o.json, kWrongCall);
   const auto limits = o.map.limits({});
   if (!limits) return report_failure(limits.error(), o.json, kWrongCall);
   const TemporaryFolder folder;

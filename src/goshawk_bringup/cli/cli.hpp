@@ -15,7 +15,7 @@ using Arguments = std::vector<std::string>;
 
 /// Exit statuses of every verb.
 inline constexpr int kDone = 0;
-inline constexpr int kNotDone = 1;    // a correct call without the wanted outcome; the code says why
+inline constexpr int kNotDone = 1;  // a correct call without the wanted outcome; the code says why
 inline constexpr int kWrongCall = 2;  // an argument, parameter or file of parameters is wrong
 
 /// Parses a verb's arguments. @return nothing to go on, or the exit status (help: 0, wrong: 2)

@@ -7,7 +7,9 @@
 namespace goshawk::cli {
 namespace {
 
-double seconds(std::int64_t ns, std::int64_t origin_ns) { return double(ns - origin_ns) * 1e-9; }
+double seconds(std::int64_t ns, std::int64_t origin_ns) {
+  return double(ns - origin_ns) * 1e-9;
+}
 
 flight_report::Leg make_leg(const CommittedRecord& committed, const FlightRecorder& record,
                             std::int64_t origin_ns) {
@@ -27,14 +29,14 @@ flight_report::Leg make_leg(const CommittedRecord& committed, const FlightRecord
 std::vector<flight_check::Sample> flown_track(const FlightRecorder& record) {
   std::vector<flight_check::Sample> track;
   for (const auto& [stamp_ns, state] : record.flown()) {
-    track.push_back({seconds(stamp_ns, record.flown().front().stamp_ns), state.position_map,
-                     state.q_map_base});
+    track.push_back(
+        {seconds(stamp_ns, record.flown().front().stamp_ns), state.position_map, state.q_map_base});
   }
   return track;
 }
 
-Status write_flight(const std::string& folder, const Json& summary,
-                    const FlightRecorder& record, const LoadedMap& map, double body_radius_m) {
+Status write_flight(const std::string& folder, const Json& summary, const FlightRecorder& record,
+                    const LoadedMap& map, double body_radius_m) {
   std::ofstream json(folder + "/flight.json");
   json << summary.dump(2) << '\n';
   if (!json.flush()) {
@@ -52,8 +54,8 @@ Status write_flight(const std::string& folder, const Json& summary,
     flight.limits = committed.limits;
   }
   for (const auto& [stamp_ns, state] : record.flown()) {
-    flight.flown.push_back({seconds(stamp_ns, origin_ns), state.position_map, state.velocity_map,
-                            state.q_map_base});
+    flight.flown.push_back(
+        {seconds(stamp_ns, origin_ns), state.position_map, state.velocity_map, state.q_map_base});
   }
   return flight_report::write_flight_folder(flight, folder);
 }

@@ -17,21 +17,20 @@ constexpr double kListenStep_s = 0.05;
 FlightRecorder::FlightRecorder(Node& node)
     : node_(node),
       goals_(node.advertise<geometry_msgs::msg::PoseStamped>("goal_pose", Qos::reliable_last())) {
-  node.subscribe<msg::StageReport>(
-      "stage_report", Qos::latched(100), [this](const msg::StageReport& m, const MessageInfo&) {
-        if (m.request_id() != 0) {
-          requests_[m.request_id()].reports[m.stage()] = m;
-        } else if (m.code() == "ok") {
-          ready_.insert(m.stage());
-        }
-      });
+  node.subscribe<msg::StageReport>("stage_report", Qos::latched(100),
+                                   [this](const msg::StageReport& m, const MessageInfo&) {
+                                     if (m.request_id() != 0) {
+                                       requests_[m.request_id()].reports[m.stage()] = m;
+                                     } else if (m.code() == "ok") {
+                                       ready_.insert(m.stage());
+                                     }
+                                   });
   node.subscribe<msg::NavigatorState>(
       "navigator_state", Qos::latched(20),
       [this](const msg::NavigatorState& m, const MessageInfo&) { navigator_ = m; });
-  node.subscribe<msg::Path>("path", Qos::reliable_last(),
-                            [this](const msg::Path& m, const MessageInfo&) {
-                              requests_[m.request().id()].path = m;
-                            });
+  node.subscribe<msg::Path>(
+      "path", Qos::reliable_last(),
+      [this](const msg::Path& m, const MessageInfo&) { requests_[m.request().id()].path = m; });
   node.subscribe<msg::Corridor>("corridor", Qos::reliable_last(),
                                 [this](const msg::Corridor& m, const MessageInfo&) {
                                   requests_[m.request().id()].corridor = m;
@@ -44,13 +43,12 @@ FlightRecorder::FlightRecorder(Node& node)
         const auto state = conversions::from_msg(m);
         if (state) flown_.push_back({conversions::to_ns(m.header().stamp()), *state});
       });
-  node.subscribe<msg::TrackingState>(
-      "tracking_state", Qos::best_effort(100),
-      [this](const msg::TrackingState& m, const MessageInfo&) {
-        if (m.mode() != "follow") return;
-        errors_.push_back(
-            {conversions::to_ns(m.header().stamp()), m.request_id(), m.position_error()});
-      });
+  node.subscribe<msg::TrackingState>("tracking_state", Qos::best_effort(100),
+                                     [this](const msg::TrackingState& m, const MessageInfo&) {
+                                       if (m.mode() != "follow") return;
+                                       errors_.push_back({conversions::to_ns(m.header().stamp()),
+                                                          m.request_id(), m.position_error()});
+                                     });
 }
 
 void FlightRecorder::on_commit(const msg::CommittedTrajectory& m) {

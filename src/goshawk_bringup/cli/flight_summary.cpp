@@ -17,7 +17,8 @@ Json stages_json(const RequestRecord& record) {
     if (found == record.reports.end()) continue;
     const auto& report = found->second;
     Json counters = Json::object();
-    for (const auto& counter : report.counters()) counters[counter.name()] = to_json(counter.value());
+    for (const auto& counter : report.counters())
+      counters[counter.name()] = to_json(counter.value());
     stages.push_back({{"name", name},
                       {"implementation", report.implementation()},
                       {"code", report.code()},
@@ -100,12 +101,12 @@ double number(const Json& object, const char* key) {
 
 void print_leg(const Json& leg, std::size_t index, std::size_t count) {
   const auto& g = leg["goal"];
-  std::printf("\nleg %zu of %zu to (%g, %g, %g): %s\n", index, count, g[0].get<double>(),
-              g[1].get<double>(), g[2].get<double>(),
-              leg["arrived"].get<bool>() ? "arrived"
-                                         : (leg["code"].get<std::string>() + ": " +
-                                            leg["message"].get<std::string>())
-                                               .c_str());
+  std::printf(
+      "\nleg %zu of %zu to (%g, %g, %g): %s\n", index, count, g[0].get<double>(),
+      g[1].get<double>(), g[2].get<double>(),
+      leg["arrived"].get<bool>()
+          ? "arrived"
+          : (leg["code"].get<std::string>() + ": " + leg["message"].get<std::string>()).c_str());
   for (const auto& stage : leg["stages"]) {
     std::printf("  %-21s %-20s compute %8.1f us   wire %8.1f us\n",
                 stage["name"].get<std::string>().c_str(),
@@ -164,9 +165,8 @@ Json summary_json(const FlightOutcome& outcome, const FlightRecorder& record,
   }
   const char* verdict = outcome.touched() ? "touched" : outcome.all_arrived() ? "safe" : "failed";
   if (!outcome.verdict) verdict = "not judged";
-  return {{"ok", outcome.ok()},   {"code", code},
-          {"message", message},   {"verdict", verdict},
-          {"legs", legs},         {"tracking", tracking_json(record, 0)},
+  return {{"ok", outcome.ok()},     {"code", code},    {"message", message},
+          {"verdict", verdict},     {"legs", legs},    {"tracking", tracking_json(record, 0)},
           {"clearance", clearance}, {"folder", folder}};
 }
 
@@ -177,10 +177,10 @@ void print_summary(const Json& summary) {
   if (const auto& c = summary["clearance"]; !c.is_null()) {
     std::printf("second opinion: %s\n", c["sentence"].get<std::string>().c_str());
   }
-  std::printf("verdict: %s%s%s\n", summary["verdict"].get<std::string>().c_str(),
-              summary["code"] == "ok" ? "" : (", " + summary["code"].get<std::string>()).c_str(),
-              summary["message"] == "" ? ""
-                                       : (": " + summary["message"].get<std::string>()).c_str());
+  std::printf(
+      "verdict: %s%s%s\n", summary["verdict"].get<std::string>().c_str(),
+      summary["code"] == "ok" ? "" : (", " + summary["code"].get<std::string>()).c_str(),
+      summary["message"] == "" ? "" : (": " + summary["message"].get<std::string>()).c_str());
   std::printf("flight folder: %s\n", summary["folder"].get<std::string>().c_str());
 }
 

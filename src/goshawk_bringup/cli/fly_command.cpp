@@ -26,8 +26,9 @@ void FlyOptions::add_to(CLI::App& app) {
       ->capture_default_str();
   app.add_option("--density", world_density, "of the made world (default 0.4)");
   app.add_option("--world-seed", world_seed, "of the made world")->capture_default_str();
-  app.add_option("--launch", launch, "launch file: flight (a process each), flight_container (one), "
-                                     "or one of your own")
+  app.add_option("--launch", launch,
+                 "launch file: flight (a process each), flight_container (one), "
+                 "or one of your own")
       ->capture_default_str();
   app.add_option("--output", folder, "flight folder (default flights/DATE)");
   app.add_option("--timeout", timeout_s, "[s] for each goal")->capture_default_str();
@@ -130,8 +131,8 @@ Result<Preparation> prepare(const FlyOptions& o) {
   if (auto s = map_server::save_octree(*map->tree, *folder + "/world.bt"); !s) return s.error();
   auto tour = make_tour(o, *config, *map);
   if (!tour) return tour.error();
-  return Preparation{*folder, *map_file, *std::move(config), *std::move(map), *std::move(tour),
-                     *limits};
+  return Preparation{*folder,         *map_file,        *std::move(config),
+                     *std::move(map), *std::move(tour), *limits};
 }
 
 Arguments launch_arguments(const FlyOptions& o, const Preparation& p) {
@@ -184,24 +185,22 @@ class Flight {
   const FlightRecorder& record() const { return record_; }
 
  private:
-  void progress(const std::string& line) const {
-    std::fprintf(stderr, "%s\n", line.c_str());
-  }
+  void progress(const std::string& line) const { std::fprintf(stderr, "%s\n", line.c_str()); }
 
   Status launch_lives() {
     if (interrupted != 0) return fail(ErrorCode::io_failed, "interrupted");
     if (auto status = launch_.ended()) {
-      return fail(ErrorCode::stage_silent, "a stage could not be started (launch ended with status " +
-                                               std::to_string(*status) + "): see " + p_.folder +
-                                               "/logs/launch.log");
+      return fail(ErrorCode::stage_silent,
+                  "a stage could not be started (launch ended with status " +
+                      std::to_string(*status) + "): see " + p_.folder + "/logs/launch.log");
     }
     return success();
   }
 
   Status wait_until_ready() {
-    static constexpr const char* kNeeded[] = {"map_server", "path_search", "corridor_builder",
-                                              "trajectory_optimizer", "navigator", "tracker",
-                                              "simulator"};
+    static constexpr const char* kNeeded[] = {
+        "map_server", "path_search", "corridor_builder", "trajectory_optimizer",
+        "navigator",  "tracker",     "simulator"};
     Status lives = success();
     const auto missing = [&] {
       std::string names;
@@ -213,8 +212,8 @@ class Flight {
     progress("starting stages ...");
     record_.listen(30.0, [&] {
       lives = launch_lives();
-      return !lives || (missing().empty() && !record_.flown().empty() &&
-                        record_.goal_readers() > 0);
+      return !lives ||
+             (missing().empty() && !record_.flown().empty() && record_.goal_readers() > 0);
     });
     if (!lives) return lives;
     if (const auto names = missing(); !names.empty()) {
@@ -316,15 +315,16 @@ Result<Json> fly(const FlyOptions& options, const Preparation& p) {
   Flight flight(options, p, node, *std::move(launch));
   const FlightOutcome outcome = flight.fly();
   const Json summary = summary_json(outcome, flight.record(), p.folder);
-  if (auto written =
-          write_flight(p.folder, summary, flight.record(), p.map, p.config.map.radius_m);
+  if (auto written = write_flight(p.folder, summary, flight.record(), p.map, p.config.map.radius_m);
       !written) {
     return written.error();
   }
   return summary;
 }
 
-bool is_wrong_call(ErrorCode code) { return code == ErrorCode::invalid_parameter; }
+bool is_wrong_call(ErrorCode code) {
+  return code == ErrorCode::invalid_parameter;
+}
 
 }  // namespace
 

@@ -16,7 +16,9 @@
 namespace goshawk::cli {
 namespace {
 
-int exit_status(int status) { return WIFEXITED(status) ? WEXITSTATUS(status) : 128; }
+int exit_status(int status) {
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128;
+}
 
 // This process' environment with the domain set.
 std::vector<std::string> environment(int domain) {

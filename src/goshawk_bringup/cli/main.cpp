@@ -20,7 +20,8 @@ struct Verb {
 };
 
 constexpr Verb kVerbs[] = {
-    {"fly", "make or load a world, start every stage, fly it, judge it, draw it", &cli::fly_command},
+    {"fly", "make or load a world, start every stage, fly it, judge it, draw it",
+     &cli::fly_command},
     {"plan", "one plan in this process, no DDS: path, corridor, certified trajectory",
      &cli::plan_command},
     {"world", "make a world, or convert a map", &cli::world_command},
@@ -35,11 +36,13 @@ constexpr Verb kVerbs[] = {
 };
 
 void print_help() {
-  std::printf("goshawk: plan and fly through clutter\n\nusage: goshawk VERB [...], and goshawk VERB "
-              "--help for each\n\n");
+  std::printf(
+      "goshawk: plan and fly through clutter\n\nusage: goshawk VERB [...], and goshawk VERB "
+      "--help for each\n\n");
   for (const Verb& verb : kVerbs) std::printf("  %-8s %s\n", verb.name, verb.what);
-  std::printf("\nDDS domain: ROS_DOMAIN_ID (default 0). Interfaces: GOSHAWK_INTERFACES, loopback by "
-              "default.\nExit status: 0 done, 1 not done (the code says why), 2 a wrong call.\n");
+  std::printf(
+      "\nDDS domain: ROS_DOMAIN_ID (default 0). Interfaces: GOSHAWK_INTERFACES, loopback by "
+      "default.\nExit status: 0 done, 1 not done (the code says why), 2 a wrong call.\n");
 }
 
 int unknown_verb(const std::string& name) {

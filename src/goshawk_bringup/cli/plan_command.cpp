@@ -36,10 +36,11 @@ void print(const Plan& plan) {
   if (plan.solution) {
     const auto& t = plan.solution->trajectory;
     const auto peaks = t.peaks();
-    std::printf("trajectory  %.3f s, %.3f m, mean %.3f m/s, top %.3f m/s and %.3f m/s^2, %zu "
-                "pieces, certified\n",
-                t.duration_s(), t.length_m(), t.length_m() / t.duration_s(), peaks.speed_m_s,
-                peaks.acceleration_m_s2, t.pieces.size());
+    std::printf(
+        "trajectory  %.3f s, %.3f m, mean %.3f m/s, top %.3f m/s and %.3f m/s^2, %zu "
+        "pieces, certified\n",
+        t.duration_s(), t.length_m(), t.length_m() / t.duration_s(), peaks.speed_m_s,
+        peaks.acceleration_m_s2, t.pieces.size());
   }
 }
 

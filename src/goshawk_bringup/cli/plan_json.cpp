@@ -14,12 +14,9 @@ Json stages_json(const std::vector<StageTime>& stages) {
 }
 
 Json path_json(const path_search::PlannedPath& path) {
-  return {{"raw_length_m", path.raw_length_m},
-          {"pruned_length_m", path.pruned_length_m},
-          {"waypoints_raw", path.raw_map.size()},
-          {"waypoints", path.waypoints_map.size()},
-          {"expanded", path.counters.expanded},
-          {"points", to_json(path.waypoints_map)}};
+  return {{"raw_length_m", path.raw_length_m},    {"pruned_length_m", path.pruned_length_m},
+          {"waypoints_raw", path.raw_map.size()}, {"waypoints", path.waypoints_map.size()},
+          {"expanded", path.counters.expanded},   {"points", to_json(path.waypoints_map)}};
 }
 
 Json polytope_json(const Polytope& p) {
@@ -80,8 +77,7 @@ Json plan_to_json(const Plan& plan) {
               {"stages", stages_json(plan.stages)}};
   object["path"] = plan.path ? path_json(*plan.path) : Json(nullptr);
   object["corridor"] = plan.corridor ? corridor_json(*plan.corridor) : Json(nullptr);
-  object["trajectory"] =
-      plan.solution ? trajectory_json(plan.solution->trajectory) : Json(nullptr);
+  object["trajectory"] = plan.solution ? trajectory_json(plan.solution->trajectory) : Json(nullptr);
   object["certificate"] =
       plan.solution ? certificate_to_json(plan.solution->certificate) : Json(nullptr);
   return object;

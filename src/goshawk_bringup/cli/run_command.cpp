@@ -22,8 +22,8 @@ int become(const Arguments& command) {
   pointers.push_back(nullptr);
   execv(pointers[0], pointers.data());
   return report_failure(
-      fail(ErrorCode::io_failed, command[0] + " cannot be started: " + std::strerror(errno)),
-      false, kNotDone);
+      fail(ErrorCode::io_failed, command[0] + " cannot be started: " + std::strerror(errno)), false,
+      kNotDone);
 }
 
 }  // namespace

@@ -92,17 +92,15 @@ int run(Options& o) {
   }
   const auto grown = inflate(made->occupied, o.spec.inflation_m, made->geometry.resolution_m);
   if (!grown) return report_failure(grown.error(), o.json, kWrongCall);
-  const auto saved =
-      map_server::save_voxels(made->geometry, made->occupied, made->known, o.output);
+  const auto saved = map_server::save_voxels(made->geometry, made->occupied, made->known, o.output);
   if (!saved) return report_failure(saved.error(), o.json, kNotDone);
   const double ratio = double(grown->count()) / double(grown->voxels());
   if (o.json) {
     std::printf("%s\n", describe(*made, o, ratio).dump(2).c_str());
   } else {
     std::printf("%s: %s voxels of %g m, %lld occupied, %.1f %% blocked when grown by %g m\n",
-                o.output.c_str(), to_text(made->geometry.size).c_str(),
-                made->geometry.resolution_m, static_cast<long long>(made->occupied.count()),
-                100.0 * ratio, o.spec.inflation_m);
+                o.output.c_str(), to_text(made->geometry.size).c_str(), made->geometry.resolution_m,
+                static_cast<long long>(made->occupied.count()), 100.0 * ratio, o.spec.inflation_m);
   }
   return kDone;
 }
@@ -110,9 +108,10 @@ int run(Options& o) {
 }  // namespace
 
 int world_command(const Arguments& arguments) {
-  CLI::App app("Make a world from a few numbers, or convert a map. The same call gives the same "
-               "bytes on every machine.",
-               "goshawk world");
+  CLI::App app(
+      "Make a world from a few numbers, or convert a map. The same call gives the same "
+      "bytes on every machine.",
+      "goshawk world");
   Options o;
   app.add_option("output", o.output, "file to write: .bt or .ot")->required();
   app.add_option("--kind", o.spec.kind, "boxes, forest, office or noise")->capture_default_str();

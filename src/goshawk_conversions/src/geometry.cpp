@@ -30,8 +30,12 @@ Status check_frame(const std_msgs::msg::Header& header, std::string_view frame,
                                           "': transform it before it is sent");
 }
 
-Vec3 from_msg(const geometry_msgs::msg::Point& m) { return {m.x(), m.y(), m.z()}; }
-Vec3 from_msg(const geometry_msgs::msg::Vector3& m) { return {m.x(), m.y(), m.z()}; }
+Vec3 from_msg(const geometry_msgs::msg::Point& m) {
+  return {m.x(), m.y(), m.z()};
+}
+Vec3 from_msg(const geometry_msgs::msg::Vector3& m) {
+  return {m.x(), m.y(), m.z()};
+}
 
 geometry_msgs::msg::Point to_point(const Vec3& v) {
   geometry_msgs::msg::Point m;
@@ -64,8 +68,7 @@ std::vector<geometry_msgs::msg::Point> to_points(const std::vector<Vec3>& points
 }
 
 FlatState from_msg(const goshawk_msgs::msg::FlatState& m) {
-  return {from_msg(m.position()), from_msg(m.velocity()), from_msg(m.acceleration()),
-          Vec3::Zero()};
+  return {from_msg(m.position()), from_msg(m.velocity()), from_msg(m.acceleration()), Vec3::Zero()};
 }
 
 goshawk_msgs::msg::FlatState to_msg(const FlatState& s) {
@@ -79,9 +82,9 @@ goshawk_msgs::msg::FlatState to_msg(const FlatState& s) {
 Result<Polytope> from_msg(const goshawk_msgs::msg::Polytope& m) {
   const std::size_t faces = m.offsets().size();
   if (m.normals().size() != 3 * faces) {
-    return fail(ErrorCode::invalid_input,
-                "a polytope has " + std::to_string(m.normals().size()) + " normal components and " +
-                    std::to_string(faces) + " offsets: three components an offset are needed");
+    return fail(ErrorCode::invalid_input, "a polytope has " + std::to_string(m.normals().size()) +
+                                              " normal components and " + std::to_string(faces) +
+                                              " offsets: three components an offset are needed");
   }
   Polytope p;
   p.A = Eigen::Map<const Polytope::Normals>(m.normals().data(), Eigen::Index(faces), 3);

@@ -22,14 +22,13 @@ Result<PlanRequest> from_msg(const goshawk_msgs::msg::PlanRequest& m) {
   request.goal = from_msg(m.goal());
   request.goal_yaw_rad = m.goal_yaw();
   request.deadline_s = m.deadline();
-  for (const auto& [name, state] : {std::pair{"start", &request.start},
-                                    std::pair{"goal", &request.goal}}) {
+  for (const auto& [name, state] :
+       {std::pair{"start", &request.start}, std::pair{"goal", &request.goal}}) {
     if (is_finite(*state)) continue;
-    return fail(ErrorCode::invalid_input, std::string("the ") + name +
-                                              " state of a plan request is not finite: position " +
-                                              to_text(state->position) + ", velocity " +
-                                              to_text(state->velocity) + ", acceleration " +
-                                              to_text(state->acceleration));
+    return fail(ErrorCode::invalid_input,
+                std::string("the ") + name + " state of a plan request is not finite: position " +
+                    to_text(state->position) + ", velocity " + to_text(state->velocity) +
+                    ", acceleration " + to_text(state->acceleration));
   }
   if (!std::isfinite(m.goal_yaw()) || !(m.deadline() >= 0.0 && std::isfinite(m.deadline()))) {
     return fail(ErrorCode::invalid_input,
@@ -59,16 +58,15 @@ Status check_deadline(const PlanRequest& request, std::int64_t now_ns) {
   const double late_s = double(now_ns - request.stamp_ns) * 1e-9 - request.deadline_s;
   if (late_s <= 0.0) return success();
   return fail(ErrorCode::deadline_exceeded,
-              "the request's deadline of " + std::to_string(request.deadline_s) +
-                  " s passed " + std::to_string(late_s) +
+              "the request's deadline of " + std::to_string(request.deadline_s) + " s passed " +
+                  std::to_string(late_s) +
                   " s ago: allow more time, or is this machine overloaded?");
 }
 
 Result<Limits> from_msg(const goshawk_msgs::msg::Limits& m) {
   if (m.norm() > 1) {
-    return fail(ErrorCode::invalid_limits,
-                "the limits' norm is " + std::to_string(m.norm()) +
-                    ": 0 (Euclidean) or 1 (each component) is meant");
+    return fail(ErrorCode::invalid_limits, "the limits' norm is " + std::to_string(m.norm()) +
+                                               ": 0 (Euclidean) or 1 (each component) is meant");
   }
   const Limits limits{.v_max_m_s = m.v_max(),
                       .a_max_m_s2 = m.a_max(),
@@ -127,8 +125,8 @@ Result<ReceivedTrajectory> from_msg(const goshawk_msgs::msg::BezierTrajectory& m
   if (!polytopes) return polytopes.error();
   auto trajectory = from_msg(m.pieces(), polytopes->size());
   if (!trajectory) return trajectory.error();
-  ReceivedTrajectory received{*std::move(request), *std::move(trajectory), *std::move(polytopes),
-                              {}};
+  ReceivedTrajectory received{
+      *std::move(request), *std::move(trajectory), *std::move(polytopes), {}};
   received.certificate = certify(received.trajectory, received.polytopes, received.request.limits,
                                  received.request.start, received.request.goal);
   if (!received.certificate.holds()) {

@@ -8,9 +8,9 @@ namespace {
 Result<Eigen::Quaterniond> attitude(const geometry_msgs::msg::Quaternion& m) {
   Eigen::Quaterniond q(m.w(), m.x(), m.y(), m.z());
   if (!(std::abs(q.norm() - 1.0) < 1e-3)) {  // NaN fails as well
-    return fail(ErrorCode::invalid_input,
-                "an attitude quaternion has length " + std::to_string(q.norm()) +
-                    ": it must be 1 (w is the scalar part)");
+    return fail(ErrorCode::invalid_input, "an attitude quaternion has length " +
+                                              std::to_string(q.norm()) +
+                                              ": it must be 1 (w is the scalar part)");
   }
   return q.normalized();
 }

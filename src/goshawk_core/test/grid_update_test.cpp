@@ -39,8 +39,7 @@ TEST(GridUpdate, ABrickAtTheEdgeTouchesNeitherPaddingNorNeighbours) {
   const Index3 size = grid.geometry.size;
   EXPECT_EQ(grid.occupied,
             BitGrid::from_words(size, true, BitGrid(grid.occupied).take_words()).value());
-  EXPECT_EQ(grid.known,
-            BitGrid::from_words(size, false, BitGrid(grid.known).take_words()).value());
+  EXPECT_EQ(grid.known, BitGrid::from_words(size, false, BitGrid(grid.known).take_words()).value());
 }
 
 TEST(GridUpdate, WhatDoesNotFitIsRefusedWholly) {

@@ -60,8 +60,7 @@ class CorridorBuilderComponent : public Component {
                                        " is the newest here: ask again");
   }
 
-  void publish(const msg::PlanRequest& request, const Corridor& corridor,
-               std::int64_t compute_ns) {
+  void publish(const msg::PlanRequest& request, const Corridor& corridor, std::int64_t compute_ns) {
     msg::Corridor m;
     m.request(request);
     m.implementation(std::string(builder_.implementation()));
@@ -71,7 +70,8 @@ class CorridorBuilderComponent : public Component {
     m.min_overlap_radius(corridor.min_overlap_radius_m());
     m.compute_ns(compute_ns);
     m.header(conversions::make_header(node_.now_ns()));
-    if (auto status = publisher_.publish(m); !status) reporter_.failed(request.id(), status.error());
+    if (auto status = publisher_.publish(m); !status)
+      reporter_.failed(request.id(), status.error());
   }
 
   void report(std::uint64_t id, const Corridor& corridor, const Timing& timing) {

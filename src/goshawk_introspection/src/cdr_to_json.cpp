@@ -73,19 +73,32 @@ class Decoder {
 
   bool read_one(const Field& field, Json& out) {
     switch (field.kind) {
-      case Kind::boolean: return read_bool(out);
-      case Kind::int8: return read_number<std::int8_t>(out);
-      case Kind::uint8: return read_number<std::uint8_t>(out);
-      case Kind::int16: return read_number<std::int16_t>(out);
-      case Kind::uint16: return read_number<std::uint16_t>(out);
-      case Kind::int32: return read_number<std::int32_t>(out);
-      case Kind::uint32: return read_number<std::uint32_t>(out);
-      case Kind::int64: return read_number<std::int64_t>(out);
-      case Kind::uint64: return read_number<std::uint64_t>(out);
-      case Kind::float32: return read_number<float>(out);
-      case Kind::float64: return read_number<double>(out);
-      case Kind::string: return read_string(out);
-      case Kind::structure: return read(all_types()[std::size_t(field.type)], out);
+      case Kind::boolean:
+        return read_bool(out);
+      case Kind::int8:
+        return read_number<std::int8_t>(out);
+      case Kind::uint8:
+        return read_number<std::uint8_t>(out);
+      case Kind::int16:
+        return read_number<std::int16_t>(out);
+      case Kind::uint16:
+        return read_number<std::uint16_t>(out);
+      case Kind::int32:
+        return read_number<std::int32_t>(out);
+      case Kind::uint32:
+        return read_number<std::uint32_t>(out);
+      case Kind::int64:
+        return read_number<std::int64_t>(out);
+      case Kind::uint64:
+        return read_number<std::uint64_t>(out);
+      case Kind::float32:
+        return read_number<float>(out);
+      case Kind::float64:
+        return read_number<double>(out);
+      case Kind::string:
+        return read_string(out);
+      case Kind::structure:
+        return read(all_types()[std::size_t(field.type)], out);
     }
     throw std::logic_error("cdr_to_json: unknown kind");
   }
@@ -110,9 +123,12 @@ class Decoder {
     T value;
     if (!primitive(value)) return false;
     if constexpr (std::is_floating_point_v<T>) {
-      if (std::isnan(value)) out = "nan";
-      else if (std::isinf(value)) out = value > 0 ? "inf" : "-inf";
-      else out = double(value);
+      if (std::isnan(value))
+        out = "nan";
+      else if (std::isinf(value))
+        out = value > 0 ? "inf" : "-inf";
+      else
+        out = double(value);
     } else {
       out = value;
     }

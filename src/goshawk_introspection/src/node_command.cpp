@@ -49,9 +49,8 @@ int list(const CommonOptions& common) {
 
 int node_command(std::vector<std::string> arguments) {
   static const std::vector<Verb> kVerbs = {
-      {"list", "the nodes of the domain", [](CLI::App&, CommonOptions& common) {
-         return [&common] { return list(common); };
-       }}};
+      {"list", "the nodes of the domain",
+       [](CLI::App&, CommonOptions& common) { return [&common] { return list(common); }; }}};
   return run_verb("node", kVerbs, std::move(arguments));
 }
 

@@ -42,10 +42,16 @@ void add_fields(const Type& type, std::string& text, std::vector<int>& inner) {
 
 }  // namespace
 
-std::span<const Type> all_types() { return generated::types(); }
+std::span<const Type> all_types() {
+  return generated::types();
+}
 
-std::uint32_t size_of(Kind kind) { return kSizes[std::size_t(kind)]; }
-std::string_view ros_name(Kind kind) { return kRosNames[std::size_t(kind)]; }
+std::uint32_t size_of(Kind kind) {
+  return kSizes[std::size_t(kind)];
+}
+std::string_view ros_name(Kind kind) {
+  return kRosNames[std::size_t(kind)];
+}
 
 Result<const Type*> find_type(std::string_view name) {
   std::vector<std::string> names;

@@ -94,7 +94,9 @@ Interruptible::~Interruptible() {
   sigaction(SIGTERM, &g_old_term, nullptr);
 }
 
-bool Interruptible::interrupted() { return g_interrupted; }
+bool Interruptible::interrupted() {
+  return g_interrupted;
+}
 
 Result<std::unique_ptr<Session>> Session::open() {
   auto options = runtime::ContextOptions::from_environment();
@@ -161,8 +163,9 @@ int Session::say_no_topic(const std::string& topic, double timeout_s) const {
   const std::string sentence = "nobody writes or reads " + topic + " in domain " +
                                std::to_string(context_->domain()) + " (waited " + waited + " s)";
   if (context_->endpoints().empty()) {
-    return say_nothing(sentence + ": no topic at all was found. Is something running, with the "
-                                  "same ROS_DOMAIN_ID?");
+    return say_nothing(sentence +
+                       ": no topic at all was found. Is something running, with the "
+                       "same ROS_DOMAIN_ID?");
   }
   if (near.empty()) return say_nothing(sentence + "; goshawk topic list shows what there is");
   return say_wrong_call(sentence + "; did you mean " + near + "?");

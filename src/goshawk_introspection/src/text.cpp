@@ -102,8 +102,7 @@ Result<Json> parse_json_or_yaml(const std::string& text) {
   try {
     return from_yaml(YAML::Load(text), 0);
   } catch (const YAML::Exception& e) {
-    return fail(ErrorCode::invalid_input,
-                "'" + text + "' is neither JSON nor YAML: " + e.what());
+    return fail(ErrorCode::invalid_input, "'" + text + "' is neither JSON nor YAML: " + e.what());
   }
 }
 

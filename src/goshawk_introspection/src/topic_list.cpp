@@ -105,7 +105,9 @@ int info(const CommonOptions& common, const std::string& topic) {
     (endpoint.writer ? publishers : subscribers).push_back(to_json(endpoint, participants));
   }
   if (common.json) {
-    std::cout << to_line(Json{{"name", *name}, {"types", types}, {"publishers", publishers},
+    std::cout << to_line(Json{{"name", *name},
+                              {"types", types},
+                              {"publishers", publishers},
                               {"subscribers", subscribers}})
               << std::endl;
     return 0;

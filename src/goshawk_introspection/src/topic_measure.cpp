@@ -30,9 +30,10 @@ std::string format(const char* pattern, auto... values) {
 
 // Both a report a second and one at the end, unless nothing was measured.
 template <typename Add, typename Report>
-int measure(const CommonOptions& common, const MeasureOptions& options, const Add& add,
-            const Report& report,
-            const std::function<int(const std::string&)>& begin = [](const auto&) { return 0; }) {
+int measure(
+    const CommonOptions& common, const MeasureOptions& options, const Add& add,
+    const Report& report,
+    const std::function<int(const std::string&)>& begin = [](const auto&) { return 0; }) {
   bool any = false;
   const int status = read_topic(
       common, options.read, begin,
@@ -58,11 +59,14 @@ int hz(const CommonOptions& common, const MeasureOptions& options) {
       [&] {
         if (periods.empty() || !(periods.mean() > 0.0)) return;
         const double rate = 1.0 / periods.mean();
-        print({{"rate_hz", rate}, {"min_s", periods.min()}, {"max_s", periods.max()},
-               {"deviation_s", periods.deviation()}, {"window", periods.size() + 1}},
+        print({{"rate_hz", rate},
+               {"min_s", periods.min()},
+               {"max_s", periods.max()},
+               {"deviation_s", periods.deviation()},
+               {"window", periods.size() + 1}},
               format("average rate: %.3f Hz  min: %.6f s  max: %.6f s  deviation: %.6f s  "
-                     "window: %zu", rate, periods.min(), periods.max(), periods.deviation(),
-                     periods.size() + 1),
+                     "window: %zu",
+                     rate, periods.min(), periods.max(), periods.deviation(), periods.size() + 1),
               common.json);
       });
 }
@@ -100,11 +104,14 @@ int delay(const CommonOptions& common, const MeasureOptions& options) {
       },
       [&] {
         if (delays.empty()) return;
-        print({{"mean_s", delays.mean()}, {"min_s", delays.min()}, {"max_s", delays.max()},
-               {"deviation_s", delays.deviation()}, {"window", delays.size()}},
+        print({{"mean_s", delays.mean()},
+               {"min_s", delays.min()},
+               {"max_s", delays.max()},
+               {"deviation_s", delays.deviation()},
+               {"window", delays.size()}},
               format("average delay: %.6f s  min: %.6f s  max: %.6f s  deviation: %.6f s  "
-                     "window: %zu", delays.mean(), delays.min(), delays.max(),
-                     delays.deviation(), delays.size()),
+                     "window: %zu",
+                     delays.mean(), delays.min(), delays.max(), delays.deviation(), delays.size()),
               common.json);
       },
       has_header);
@@ -124,8 +131,11 @@ int bw(const CommonOptions& common, const MeasureOptions& options) {
         const double span_s = times.empty() ? 0.0 : times.back() - times.front();
         const double rate = span_s > 0.0 ? (sizes.sum() - sizes.front()) / span_s : 0.0;
         if (sizes.empty()) return;
-        print({{"bytes_per_s", rate}, {"mean_bytes", sizes.mean()}, {"min_bytes", sizes.min()},
-               {"max_bytes", sizes.max()}, {"window", sizes.size()}},
+        print({{"bytes_per_s", rate},
+               {"mean_bytes", sizes.mean()},
+               {"min_bytes", sizes.min()},
+               {"max_bytes", sizes.max()},
+               {"window", sizes.size()}},
               format("%.1f KB/s from %zu messages  mean: %.0f B  min: %.0f B  max: %.0f B",
                      rate / 1e3, sizes.size(), sizes.mean(), sizes.min(), sizes.max()),
               common.json);
@@ -148,10 +158,14 @@ Verb measure_verb(const char* name, const char* summary,
 
 }  // namespace
 
-Verb topic_hz_verb() { return measure_verb("hz", "rate at which messages come", hz); }
+Verb topic_hz_verb() {
+  return measure_verb("hz", "rate at which messages come", hz);
+}
 Verb topic_delay_verb() {
   return measure_verb("delay", "time from the header's stamp to the arrival here", delay);
 }
-Verb topic_bw_verb() { return measure_verb("bw", "bytes a second", bw); }
+Verb topic_bw_verb() {
+  return measure_verb("bw", "bytes a second", bw);
+}
 
 }  // namespace goshawk::introspection

@@ -41,8 +41,10 @@ int publish_all(Session& session, const runtime::RawPublisher& publisher,
   // What is on its way must arrive before the writer goes.
   const bool arrived = publisher.wait_acknowledged(std::max(1.0, common.timeout_s));
   if (common.json) {
-    std::cout << to_line({{"topic", options.topic}, {"type", options.type},
-                          {"published", published}, {"subscribers", publisher.matched()}})
+    std::cout << to_line({{"topic", options.topic},
+                          {"type", options.type},
+                          {"published", published},
+                          {"subscribers", publisher.matched()}})
               << std::endl;
   }
   if (failed) return kNothing;

@@ -12,7 +12,7 @@ namespace goshawk::introspection {
 /// What echo, hz, delay and bw have in common.
 struct ReadOptions {
   std::string topic;
-  int count = 0;       // messages until the end; 0: until Ctrl-C
+  int count = 0;         // messages until the end; 0: until Ctrl-C
   bool patient = false;  // waits for the first message as long as it takes
 };
 

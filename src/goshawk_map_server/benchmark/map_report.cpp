@@ -75,7 +75,8 @@ Pieces pieces_of(const VoxelGrid& grid) {
         if (grid.occupied.get(at)) continue;
         ++pieces.free;
         pieces.measured_free += grid.known.get(at) ? 1 : 0;
-        if (!seen.get(at)) pieces.largest = std::max(pieces.largest, flood(grid.occupied, at, seen));
+        if (!seen.get(at))
+          pieces.largest = std::max(pieces.largest, flood(grid.occupied, at, seen));
       }
     }
   }
@@ -105,8 +106,7 @@ int report(const std::string& path, double inflation_m) {
               static_cast<long long>(occupied), static_cast<long long>(free), layer_mb);
   std::printf("load %.3f s, voxelize %.3f s, peak %.1f MB after loading\n", load_s, voxelize_s,
               load_mb);
-  for (const auto policy :
-       {UnknownPolicy::occupied, UnknownPolicy::blocked, UnknownPolicy::free}) {
+  for (const auto policy : {UnknownPolicy::occupied, UnknownPolicy::blocked, UnknownPolicy::free}) {
     watch.lap_s();
     const auto grid = make_voxel_grid(*raw, {policy, inflation_m}, 1);
     const double grow_s = watch.lap_s();
@@ -117,10 +117,11 @@ int report(const std::string& path, double inflation_m) {
     }
     const double grow_mb = peak_mb();
     const Pieces pieces = pieces_of(*grid);
-    std::printf("unknown %-8s: %5.1f %% of the measured free space stays, %5.1f %% of all that is "
-                "free in one piece; grown in %.3f s, peak %.1f MB\n",
-                name.c_str(), 100.0 * double(pieces.measured_free) / double(free),
-                100.0 * double(pieces.largest) / double(pieces.free), grow_s, grow_mb);
+    std::printf(
+        "unknown %-8s: %5.1f %% of the measured free space stays, %5.1f %% of all that is "
+        "free in one piece; grown in %.3f s, peak %.1f MB\n",
+        name.c_str(), 100.0 * double(pieces.measured_free) / double(free),
+        100.0 * double(pieces.largest) / double(pieces.free), grow_s, grow_mb);
   }
   return 0;
 }

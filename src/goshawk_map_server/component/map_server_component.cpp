@@ -53,8 +53,8 @@ class MapServerComponent : public Component {
         map_(make_map(config_)),
         reporter_(node, "octomap"),
         voxels_(node.advertise<msg::VoxelGrid>("map/voxels", Qos::latched())),
-        updates_(node.advertise<msg::VoxelGridUpdate>("map/voxels/updates",
-                                                      Qos::reliable_last(50))),
+        updates_(
+            node.advertise<msg::VoxelGridUpdate>("map/voxels/updates", Qos::reliable_last(50))),
         octomap_(node.advertise<octomap_msgs::msg::Octomap>("octomap_binary", Qos::latched())) {
     node.subscribe<sensor_msgs::msg::PointCloud2>(
         "cloud_in", Qos::best_effort(2),

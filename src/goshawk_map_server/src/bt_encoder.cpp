@@ -13,7 +13,9 @@ enum Content : unsigned { unknown = 0, free_space = 1, occupied_space = 2, mixed
 class BtEncoder {
  public:
   BtEncoder(Index3 lower_key, const BitGrid& occupied, const BitGrid& known)
-      : lower_(lower_key), upper_(lower_key + occupied.size()), occupied_(occupied),
+      : lower_(lower_key),
+        upper_(lower_key + occupied.size()),
+        occupied_(occupied),
         known_(known) {}
 
   std::string run() {
@@ -26,8 +28,8 @@ class BtEncoder {
  private:
   Content encode(Index3 key, int level) {
     const int side = 1 << level;
-    if (key.x >= upper_.x || key.y >= upper_.y || key.z >= upper_.z ||
-        key.x + side <= lower_.x || key.y + side <= lower_.y || key.z + side <= lower_.z) {
+    if (key.x >= upper_.x || key.y >= upper_.y || key.z >= upper_.z || key.x + side <= lower_.x ||
+        key.y + side <= lower_.y || key.z + side <= lower_.z) {
       return unknown;
     }
     if (level == 0) return voxel(key - lower_);

@@ -11,8 +11,7 @@ inline BitGrid::Word growing_word(BitGrid::Word occupied, BitGrid::Word known,
 }
 
 /// What is added after the growth. Padding bits of the result are undefined.
-inline BitGrid::Word finished_word(BitGrid::Word grown, BitGrid::Word known,
-                                   UnknownPolicy policy) {
+inline BitGrid::Word finished_word(BitGrid::Word grown, BitGrid::Word known, UnknownPolicy policy) {
   return policy == UnknownPolicy::blocked ? grown | ~known : grown;
 }
 

@@ -23,8 +23,7 @@ void take_changes(const octomap::OcTree& tree, RawVoxels& raw, UnknownPolicy pol
     const bool was_occupied = raw.occupied.get(voxel);
     const bool was_known = raw.known.get(voxel);
     if (occupied == was_occupied && was_known) continue;
-    const bool grew_before =
-        was_occupied || (!was_known && policy == UnknownPolicy::occupied);
+    const bool grew_before = was_occupied || (!was_known && policy == UnknownPolicy::occupied);
     raw.occupied.set(voxel, occupied);
     raw.known.set(voxel, true);
     dirty.mark(voxel, occupied != grew_before);
@@ -54,16 +53,15 @@ Result<LiveMap> LiveMap::unknown_space(const Box& box, double resolution_m, cons
   RawVoxels raw{*geometry, BitGrid(geometry->size, true), BitGrid(geometry->size, false)};
   auto grid = grow(raw, growth, 1);
   if (!grid) return grid.error();
-  return LiveMap(std::make_shared<octomap::OcTree>(resolution_m), std::move(raw),
-                 std::move(*grid), growth);
+  return LiveMap(std::make_shared<octomap::OcTree>(resolution_m), std::move(raw), std::move(*grid),
+                 growth);
 }
 
 Result<LiveMap::ScanResult> LiveMap::insert_scan(std::span<const Vec3> points_map,
                                                  const Vec3& sensor_origin_map,
                                                  double max_range_m) {
   tree_->resetChangeDetection();
-  const auto left_out =
-      map_server::insert_scan(*tree_, points_map, sensor_origin_map, max_range_m);
+  const auto left_out = map_server::insert_scan(*tree_, points_map, sensor_origin_map, max_range_m);
   if (!left_out) return left_out.error();
 
   DirtyBricks dirty(raw_.geometry.size, reach_of(growth_, raw_.geometry));

@@ -81,9 +81,8 @@ Box box_around(const Points& points, double resolution_m) {
 }
 
 Result<OcTreePtr> tree_of_points(const Points& points, const LoadOptions& options) {
-  const auto geometry =
-      raster_of(options.box.value_or(box_around(points, options.resolution_m)),
-                options.resolution_m, options.max_voxels);
+  const auto geometry = raster_of(options.box.value_or(box_around(points, options.resolution_m)),
+                                  options.resolution_m, options.max_voxels);
   if (!geometry) return geometry.error();
   BitGrid occupied(geometry->size, true);
   for (const Vec3& p : points) {
@@ -95,8 +94,7 @@ Result<OcTreePtr> tree_of_points(const Points& points, const LoadOptions& option
 
 Result<OcTreePtr> tree_of_scan(const Points& points, const LoadOptions& options) {
   auto tree = std::make_shared<octomap::OcTree>(options.resolution_m);
-  auto inserted =
-      insert_scan(*tree, points, options.sensor_origin_map, options.max_range_m);
+  auto inserted = insert_scan(*tree, points, options.sensor_origin_map, options.max_range_m);
   if (!inserted) return inserted.error();
   if (tree->size() == 0) return fail(ErrorCode::map_empty, "the scan reaches no voxel");
   return tree;
@@ -107,10 +105,9 @@ Status load_cloud(const Points& all, const LoadOptions& options, MapSource& sour
   const Points points = usable(all, options, source);
   if (points.empty()) {
     return fail(ErrorCode::map_empty,
-                "none of its " + std::to_string(source.points_read) +
-                    " points can be used: " + std::to_string(source.points_not_finite) +
-                    " are not finite, " + std::to_string(source.points_outside) +
-                    " lie outside the box");
+                "none of its " + std::to_string(source.points_read) + " points can be used: " +
+                    std::to_string(source.points_not_finite) + " are not finite, " +
+                    std::to_string(source.points_outside) + " lie outside the box");
   }
   auto tree = options.cloud == CloudMeaning::scan ? tree_of_scan(points, options)
                                                   : tree_of_points(points, options);
@@ -162,8 +159,8 @@ Status check_ending(const std::string& path) {
   for (const std::string_view known : {"bt", "ot", "pcd", "ply", "3dmap"}) {
     if (ending == known) return success();
   }
-  return about(path, fail(ErrorCode::map_unreadable,
-                          "its name must end in .bt, .ot, .pcd, .ply or .3dmap"));
+  return about(
+      path, fail(ErrorCode::map_unreadable, "its name must end in .bt, .ot, .pcd, .ply or .3dmap"));
 }
 
 Error no_memory() {

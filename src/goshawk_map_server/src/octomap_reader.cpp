@@ -17,7 +17,7 @@ namespace {
 constexpr int kTreeDepth = 16;
 
 struct Header {
-  std::string kind;       // of tree
+  std::string kind;  // of tree
   std::uint64_t nodes = 0;
   double resolution_m = 0.0;
   std::string_view payload;

@@ -17,13 +17,14 @@ namespace {
 
 constexpr double kHalfKeys = 32768.0;  // an OcTree spans 65536 voxels, the origin in the middle
 
-Error too_large(const std::string& what) { return fail(ErrorCode::map_too_large, what); }
+Error too_large(const std::string& what) {
+  return fail(ErrorCode::map_too_large, what);
+}
 
 Result<std::string> encode(const GridGeometry& geometry, const BitGrid& occupied,
                            const BitGrid& known) {
   if (auto status = geometry.check(); !status) return status.error();
-  if (!(occupied.size() == geometry.size) ||
-      (!known.empty() && !(known.size() == geometry.size))) {
+  if (!(occupied.size() == geometry.size) || (!known.empty() && !(known.size() == geometry.size))) {
     return fail(ErrorCode::invalid_input, "the bits do not have the size of the geometry");
   }
   const Vec3 steps = geometry.origin_map / geometry.resolution_m;
@@ -42,8 +43,8 @@ Result<std::string> encode(const GridGeometry& geometry, const BitGrid& occupied
     return too_large("the map reaches beyond OctoMap's 32768 voxels from the origin");
   }
   const auto key = [&](double v) { return int(v + kHalfKeys); };
-  std::string payload = encode_bt(
-      {key(rounded.x()), key(rounded.y()), key(rounded.z())}, occupied, known);
+  std::string payload =
+      encode_bt({key(rounded.x()), key(rounded.y()), key(rounded.z())}, occupied, known);
   if (payload.empty()) return fail(ErrorCode::map_empty, "the map knows of no voxel");
   return payload;
 }
@@ -68,9 +69,9 @@ Status write_file(const std::string& path, const std::string& head, const std::s
   if (file) std::filesystem::rename(unfinished, path, error);
   if (file && !error) return success();
   std::remove(unfinished.c_str());
-  return fail(ErrorCode::io_failed,
-              "cannot write '" + path + "': check that its folder exists, may be written to and "
-              "has space left");
+  return fail(ErrorCode::io_failed, "cannot write '" + path +
+                                        "': check that its folder exists, may be written to and "
+                                        "has space left");
 }
 
 Status check_ending(const std::string& path) {
@@ -84,9 +85,9 @@ Status check_ending(const std::string& path) {
 
 Result<GridGeometry> raster_of(const Box& box, double resolution_m, std::int64_t max_voxels) {
   if (!(std::isfinite(resolution_m) && resolution_m > 0.0)) {
-    return fail(ErrorCode::invalid_parameter,
-                "the map's resolution is " + std::to_string(resolution_m) +
-                    " m: it must be finite and above zero");
+    return fail(ErrorCode::invalid_parameter, "the map's resolution is " +
+                                                  std::to_string(resolution_m) +
+                                                  " m: it must be finite and above zero");
   }
   const Vec3 lower = box.lower_map / resolution_m;
   const Vec3 upper = box.upper_map / resolution_m;
@@ -135,8 +136,7 @@ Status save_octree(const octomap::OcTree& tree, const std::string& path) {
   }
   std::ostringstream body;
   if (tree.size() > 0) tree.writeData(body);
-  return write_file(path, header("file", tree.size(), tree.getResolution()),
-                    std::move(body).str());
+  return write_file(path, header("file", tree.size(), tree.getResolution()), std::move(body).str());
 }
 
 Status save_voxels(const GridGeometry& geometry, const BitGrid& occupied, const BitGrid& known,

@@ -86,13 +86,20 @@ Result<Header> read_header(std::string_view bytes) {
     if (words.empty() || words[0].front() == '#') continue;
     const std::string_view key = words[0];
     words.erase(words.begin());
-    if (key == "FIELDS") lines.fields = words;
-    else if (key == "SIZE") lines.size = words;
-    else if (key == "TYPE") lines.type = words;
-    else if (key == "COUNT") lines.count = words;
-    else if (key == "WIDTH") lines.width = words;
-    else if (key == "HEIGHT") lines.height = words;
-    else if (key == "POINTS") lines.points = words;
+    if (key == "FIELDS")
+      lines.fields = words;
+    else if (key == "SIZE")
+      lines.size = words;
+    else if (key == "TYPE")
+      lines.type = words;
+    else if (key == "COUNT")
+      lines.count = words;
+    else if (key == "WIDTH")
+      lines.width = words;
+    else if (key == "HEIGHT")
+      lines.height = words;
+    else if (key == "POINTS")
+      lines.points = words;
     else if (key == "DATA" && words.size() == 1) {
       auto header = layout(lines);
       if (!header) return header;
@@ -111,8 +118,8 @@ Result<Header> read_header(std::string_view bytes) {
 }
 
 Error too_short(const Header& header, const std::string& what) {
-  return malformed("the header promises " + std::to_string(header.points) + " points, but " +
-                   what + ": the file is truncated");
+  return malformed("the header promises " + std::to_string(header.points) + " points, but " + what +
+                   ": the file is truncated");
 }
 
 double load(const char* at, std::size_t size) {
@@ -160,8 +167,8 @@ Result<Points> read_ascii(const Header& header) {
 
 Result<Points> read_binary(const Header& header) {
   if (header.points > header.data.size() / header.stride) {
-    return too_short(header, "there are bytes for " +
-                                 std::to_string(header.data.size() / header.stride));
+    return too_short(header,
+                     "there are bytes for " + std::to_string(header.data.size() / header.stride));
   }
   Points points(header.points);
   for (std::size_t i = 0; i < points.size(); ++i) {

@@ -50,7 +50,9 @@ std::size_t bytes_of(Type type) {
   return sizes[std::size_t(type)];
 }
 
-bool is_integer(Type type) { return type != Type::f32 && type != Type::f64; }
+bool is_integer(Type type) {
+  return type != Type::f32 && type != Type::f64;
+}
 
 std::optional<Property> read_property(const std::vector<std::string_view>& words) {
   Property property;
@@ -82,10 +84,14 @@ Result<Header> read_header(std::string_view bytes) {
     }
     if (words[0] == "format" && words.size() >= 2) {
       has_format = true;
-      if (words[1] == "ascii") header.encoding = Encoding::ascii;
-      else if (words[1] == "binary_little_endian") header.encoding = Encoding::little;
-      else if (words[1] == "binary_big_endian") header.encoding = Encoding::big;
-      else return malformed("the format is none of ascii and binary of either endian");
+      if (words[1] == "ascii")
+        header.encoding = Encoding::ascii;
+      else if (words[1] == "binary_little_endian")
+        header.encoding = Encoding::little;
+      else if (words[1] == "binary_big_endian")
+        header.encoding = Encoding::big;
+      else
+        return malformed("the format is none of ascii and binary of either endian");
     } else if (words[0] == "element" && words.size() == 3) {
       const auto rows = parse<std::uint64_t>(words[2]);
       if (!rows) return malformed("an element's number is no number");
@@ -104,7 +110,8 @@ Result<Header> read_header(std::string_view bytes) {
 // Takes values off the front of the data, in any of the three encodings.
 class Values {
  public:
-  Values(std::string_view data, Encoding encoding) : text_(data), bytes_(data), encoding_(encoding) {}
+  Values(std::string_view data, Encoding encoding)
+      : text_(data), bytes_(data), encoding_(encoding) {}
 
   std::optional<double> next(Type type) {
     return encoding_ == Encoding::ascii ? parse<double>(text_.word()) : binary(type);
@@ -121,12 +128,18 @@ class Values {
     }
     bytes_.remove_prefix(size);
     switch (type) {
-      case Type::i8: return double(std::int8_t(bits));
-      case Type::i16: return double(std::int16_t(bits));
-      case Type::i32: return double(std::int32_t(bits));
-      case Type::f32: return double(std::bit_cast<float>(std::uint32_t(bits)));
-      case Type::f64: return std::bit_cast<double>(bits);
-      default: return double(bits);
+      case Type::i8:
+        return double(std::int8_t(bits));
+      case Type::i16:
+        return double(std::int16_t(bits));
+      case Type::i32:
+        return double(std::int32_t(bits));
+      case Type::f32:
+        return double(std::bit_cast<float>(std::uint32_t(bits)));
+      case Type::f64:
+        return std::bit_cast<double>(bits);
+      default:
+        return double(bits);
     }
   }
 

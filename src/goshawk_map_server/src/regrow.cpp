@@ -23,8 +23,9 @@ Window window_around(Index3 brick, int reach, Index3 grid) {
   const Index3 lo{lower(brick.x, Brick::kSizeX) & ~63, lower(brick.y, Brick::kSizeY),
                   lower(brick.z, Brick::kSizeZ)};
   const int x1 = std::min(grid.x, (upper(brick.x, Brick::kSizeX, grid.x) + 63) & ~63);
-  return {lo, Index3{x1, upper(brick.y, Brick::kSizeY, grid.y),
-                     upper(brick.z, Brick::kSizeZ, grid.z)} - lo};
+  return {lo,
+          Index3{x1, upper(brick.y, Brick::kSizeY, grid.y), upper(brick.z, Brick::kSizeZ, grid.z)} -
+              lo};
 }
 
 BitGrid growing_bits(const RawVoxels& raw, const Window& window, UnknownPolicy policy) {
@@ -63,10 +64,7 @@ Word valid_bits(Index3 brick, Index3 grid) {
 }  // namespace
 
 DirtyBricks::DirtyBricks(Index3 grid_size, int reach)
-    : size_(grid_size),
-      counts_(brick_counts(grid_size)),
-      reach_(reach),
-      marked_(counts_, false) {}
+    : size_(grid_size), counts_(brick_counts(grid_size)), reach_(reach), marked_(counts_, false) {}
 
 void DirtyBricks::mark(Index3 voxel, bool grows) {
   const int reach = grows ? reach_ : 0;
@@ -103,8 +101,7 @@ Brick regrow(const RawVoxels& raw, const Growth& growth, Index3 index) {
   const Index3 grid = raw.geometry.size;
   const Window window = window_around(index, reach_of(growth, raw.geometry), grid);
   const BitGrid local = growing_bits(raw, window, growth.unknown);
-  const BitGrid grown =
-      inflate(local, growth.inflation_m, raw.geometry.resolution_m).value();
+  const BitGrid grown = inflate(local, growth.inflation_m, raw.geometry.resolution_m).value();
   const std::size_t word = std::size_t(index.x) - std::size_t(window.lower.x) / 64;
   const Word valid = valid_bits(index, grid);
 

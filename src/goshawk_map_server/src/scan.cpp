@@ -15,10 +15,10 @@ Result<std::int64_t> insert_scan(octomap::OcTree& tree, std::span<const Vec3> po
   // Rays must stay on the raster: 32768 voxels to each side of the origin, one to spare.
   const double reach_m = 32766.0 * tree.getResolution();
   if (sensor_origin_map.cwiseAbs().maxCoeff() + max_range_m > reach_m) {
-    return fail(ErrorCode::map_too_large,
-                "the sensor at " + to_text(sensor_origin_map) + " m with a range of " +
-                    std::to_string(max_range_m) + " m reaches beyond OctoMap's 32768 voxels from "
-                    "the origin: use a coarser resolution");
+    return fail(ErrorCode::map_too_large, "the sensor at " + to_text(sensor_origin_map) +
+                                              " m with a range of " + std::to_string(max_range_m) +
+                                              " m reaches beyond OctoMap's 32768 voxels from "
+                                              "the origin: use a coarser resolution");
   }
   octomap::Pointcloud cloud;
   cloud.reserve(points_map.size());

@@ -118,16 +118,18 @@ Result<RawVoxels> voxelize(const octomap::OcTree& tree, const VoxelizeOptions& o
 
 std::string_view to_string(UnknownPolicy policy) {
   switch (policy) {
-    case UnknownPolicy::occupied: return "occupied";
-    case UnknownPolicy::blocked: return "blocked";
-    case UnknownPolicy::free: return "free";
+    case UnknownPolicy::occupied:
+      return "occupied";
+    case UnknownPolicy::blocked:
+      return "blocked";
+    case UnknownPolicy::free:
+      return "free";
   }
   return "";
 }
 
 std::optional<UnknownPolicy> unknown_policy(std::string_view word) {
-  for (const auto policy :
-       {UnknownPolicy::occupied, UnknownPolicy::blocked, UnknownPolicy::free}) {
+  for (const auto policy : {UnknownPolicy::occupied, UnknownPolicy::blocked, UnknownPolicy::free}) {
     if (to_string(policy) == word) return policy;
   }
   return {};

@@ -13,8 +13,8 @@
 namespace goshawk::map_server {
 namespace {
 
-using ::testing::HasSubstr;
 using testing::Folder;
+using ::testing::HasSubstr;
 
 void expect_refused(const std::string& path, ErrorCode code) {
   const auto source = load_map(path);
@@ -40,14 +40,17 @@ void write_tree(const Folder& folder) {
 std::vector<std::pair<std::string, std::string>> valid_files() {
   const Folder folder;
   write_tree(folder);
-  const std::string pcd = "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 2\n"
-                          "HEIGHT 1\nPOINTS 2\nDATA ";
-  const std::string floats("\0\0\x80\x3f\0\0\0\x40\0\0\x40\x40\0\0\x80\x3f\0\0\x80\x3f\0\0\x80\x3f", 24);
+  const std::string pcd =
+      "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 2\n"
+      "HEIGHT 1\nPOINTS 2\nDATA ";
+  const std::string floats("\0\0\x80\x3f\0\0\0\x40\0\0\x40\x40\0\0\x80\x3f\0\0\x80\x3f\0\0\x80\x3f",
+                           24);
   // LZF: two literal runs of 12 bytes.
   const std::string packed = "\x0b" + floats.substr(0, 12) + "\x0b" + floats.substr(12);
   const std::string sizes("\x1a\0\0\0\x18\0\0\0", 8);
-  const std::string ply = "element vertex 2\nproperty float x\nproperty float y\nproperty float z\n"
-                          "end_header\n";
+  const std::string ply =
+      "element vertex 2\nproperty float x\nproperty float y\nproperty float z\n"
+      "end_header\n";
   return {{"t.bt", testing::bytes_of(folder.file("t.bt"))},
           {"t.ot", testing::bytes_of(folder.file("t.ot"))},
           {"a.pcd", pcd + "ascii\n1 2 3\n1 1 1\n"},
@@ -143,8 +146,9 @@ TEST(HostileFile, EmptyAndForeignFilesAreMalformed) {
 
 TEST(HostileFile, ClaimsOfABillionPointsAreCheckedAgainstTheFile) {
   const Folder folder;
-  const std::string pcd = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 1000000000\n"
-                          "HEIGHT 1\nPOINTS 1000000000\nDATA ";
+  const std::string pcd =
+      "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 1000000000\n"
+      "HEIGHT 1\nPOINTS 1000000000\nDATA ";
   expect_refused(folder.write("a.pcd", pcd + "ascii\n1 2 3\n"), ErrorCode::map_malformed);
   expect_refused(folder.write("b.pcd", pcd + "binary\n123412341234"), ErrorCode::map_malformed);
   expect_refused(folder.write("c.pcd", pcd + "binary_compressed\n" +
@@ -153,18 +157,20 @@ TEST(HostileFile, ClaimsOfABillionPointsAreCheckedAgainstTheFile) {
   std::string most = pcd + "binary\n1234";
   most.replace(most.find("POINTS 1000000000"), 17, "POINTS 18446744073709551615");
   expect_refused(folder.write("d.pcd", most), ErrorCode::map_malformed);
-  const std::string ply = "ply\nformat FORMAT 1.0\nelement junk 1000000000000\nelement vertex "
-                          "1000000000\nproperty float x\nproperty float y\nproperty float z\n"
-                          "end_header\n1 2 3\n";
+  const std::string ply =
+      "ply\nformat FORMAT 1.0\nelement junk 1000000000000\nelement vertex "
+      "1000000000\nproperty float x\nproperty float y\nproperty float z\n"
+      "end_header\n1 2 3\n";
   for (const std::string format : {"ascii", "binary_little_endian", "binary_big_endian"}) {
     std::string bytes = ply;
     bytes.replace(bytes.find("FORMAT"), 6, format);
     expect_refused(folder.write(format + ".ply", bytes), ErrorCode::map_malformed);
   }
-  expect_refused(folder.write("list.ply", "ply\nformat ascii 1.0\nelement junk 1\nproperty list "
-                                          "uint int i\nelement vertex 1\nproperty float x\n"
-                                          "property float y\nproperty float z\nend_header\n"
-                                          "4000000000 1 2\n"),
+  expect_refused(folder.write("list.ply",
+                              "ply\nformat ascii 1.0\nelement junk 1\nproperty list "
+                              "uint int i\nelement vertex 1\nproperty float x\n"
+                              "property float y\nproperty float z\nend_header\n"
+                              "4000000000 1 2\n"),
                  ErrorCode::map_malformed);
 }
 
@@ -187,8 +193,9 @@ TEST(HostileFile, WarframeMapsMustHoldTheirVoxels) {
 TEST(HostileFile, PointsFarApartAreTooLargeAndTheBoxMendsIt) {
   const Folder folder;
   const std::string path = folder.write(
-      "far.pcd", "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 2\nHEIGHT 1\nPOINTS 2\n"
-                 "DATA ascii\n0.1 0.1 0.1\n1e30 1e30 -1e30\n");
+      "far.pcd",
+      "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 2\nHEIGHT 1\nPOINTS 2\n"
+      "DATA ascii\n0.1 0.1 0.1\n1e30 1e30 -1e30\n");
   expect_refused(path, ErrorCode::map_too_large);
   LoadOptions options;
   options.box = Box{Vec3::Zero(), Vec3::Ones()};
@@ -227,21 +234,24 @@ TEST(HostileFile, TreesThatRunDeepOrLieAboutTheirSizeAreMalformed) {
   expect_refused(bt("2", "1e-300", leaf), ErrorCode::map_malformed);
   expect_refused(bt("0", "0.1", ""), ErrorCode::map_empty);
   expect_refused(bt("1", "0.1", std::string(2, '\0')), ErrorCode::map_empty);
-  expect_refused(folder.write("t.ot", "# Octomap OcTree file\nid OcTreeStamped\nsize 1\nres 0.1\n"
-                                      "data\n12345"),
+  expect_refused(folder.write("t.ot",
+                              "# Octomap OcTree file\nid OcTreeStamped\nsize 1\nres 0.1\n"
+                              "data\n12345"),
                  ErrorCode::map_malformed);
   const std::string nan_leaf = std::string("\0\0\0\0\x01", 5) + std::string("\0\0\xc0\x7f\0", 5);
-  expect_refused(folder.write("n.ot", "# Octomap OcTree file\nid OcTree\nsize 2\nres 0.1\ndata\n" +
-                                          nan_leaf),
-                 ErrorCode::map_malformed);
+  expect_refused(
+      folder.write("n.ot", "# Octomap OcTree file\nid OcTree\nsize 2\nres 0.1\ndata\n" + nan_leaf),
+      ErrorCode::map_malformed);
 }
 
 // One leaf of 32768 voxels a side is a sound file of a few bytes.
 TEST(HostileFile, AHugeLeafIsTooLargeUnlessABoxCutsIt) {
   const Folder folder;
   const MapSource source =
-      load_map(folder.write("t.bt", "# Octomap OcTree binary file\nid OcTree\nsize 2\nres 0.1\n"
-                                    "data\n" + std::string("\0\x80", 2)))
+      load_map(folder.write("t.bt",
+                            "# Octomap OcTree binary file\nid OcTree\nsize 2\nres 0.1\n"
+                            "data\n" +
+                                std::string("\0\x80", 2)))
           .value();
   EXPECT_EQ(voxelize(*source.tree).code(), ErrorCode::map_too_large);
   VoxelizeOptions options;

@@ -72,9 +72,9 @@ TEST(LiveMap, NothingUnseenBecomesFreeUnderTheStrictPolicies) {
 }
 
 TEST(LiveMap, OnlyBricksThatChangedAreSent) {
-  LiveMap map = LiveMap::unknown_space({Vec3(0, 0, 0), Vec3(64, 16, 8)}, 0.1,
-                                       {UnknownPolicy::free, 0.2})
-                    .value();
+  LiveMap map =
+      LiveMap::unknown_space({Vec3(0, 0, 0), Vec3(64, 16, 8)}, 0.1, {UnknownPolicy::free, 0.2})
+          .value();
   const Vec3 from(1.05, 1.05, 1.05);
   const std::vector<Vec3> one{Vec3(2.05, 1.05, 1.05)};
   const auto first = map.insert_scan(one, from, 10.0).value();
@@ -93,9 +93,9 @@ TEST(LiveMap, OnlyBricksThatChangedAreSent) {
 }
 
 TEST(LiveMap, AnObstacleThatGoesAwayIsFreedAgain) {
-  LiveMap map = LiveMap::unknown_space({Vec3(0, 0, 0), Vec3(6, 3, 2)}, 0.1,
-                                       {UnknownPolicy::blocked, 0.15})
-                    .value();
+  LiveMap map =
+      LiveMap::unknown_space({Vec3(0, 0, 0), Vec3(6, 3, 2)}, 0.1, {UnknownPolicy::blocked, 0.15})
+          .value();
   const Vec3 from(0.55, 1.05, 1.05);
   const Vec3 box_at(2.05, 1.05, 1.05);
   const std::vector<Vec3> near_hit{box_at};
@@ -159,10 +159,9 @@ TEST(LiveMap, BadBoxesAreRefused) {
             ErrorCode::invalid_parameter);
   EXPECT_EQ(LiveMap::unknown_space({Vec3::Zero(), Vec3::Ones()}, -0.1, {}).code(),
             ErrorCode::invalid_parameter);
-  EXPECT_EQ(LiveMap::unknown_space({Vec3::Zero(), Vec3::Ones()}, 0.1,
-                                   {UnknownPolicy::free, -1.0})
-                .code(),
-            ErrorCode::invalid_input);
+  EXPECT_EQ(
+      LiveMap::unknown_space({Vec3::Zero(), Vec3::Ones()}, 0.1, {UnknownPolicy::free, -1.0}).code(),
+      ErrorCode::invalid_input);
 }
 
 }  // namespace

@@ -72,15 +72,16 @@ std::string pcd_compressed(const std::vector<Vec3>& points) {
   }
   for (std::size_t i = 0; i < points.size(); ++i) plain += raw(0.0F);
   std::string packed(plain.size() * 2 + 64, '\0');
-  const unsigned size = lzf_compress(plain.data(), unsigned(plain.size()), packed.data(),
-                                     unsigned(packed.size()));
+  const unsigned size =
+      lzf_compress(plain.data(), unsigned(plain.size()), packed.data(), unsigned(packed.size()));
   packed.resize(size);
   return pcd_header("x y z intensity", "4 4 4 4", points.size(), "binary_compressed") +
          raw(std::uint32_t(size)) + raw(std::uint32_t(plain.size())) + packed;
 }
 
 std::string ply_header(const std::string& format, std::size_t points) {
-  return "ply\nformat " + format + " 1.0\ncomment made by a test\nelement camera 2\n"
+  return "ply\nformat " + format +
+         " 1.0\ncomment made by a test\nelement camera 2\n"
          "property list uchar int ids\nproperty char flag\nelement vertex " +
          std::to_string(points) +
          "\nproperty uchar red\nproperty double x\nproperty float y\nproperty float z\n"
@@ -191,7 +192,8 @@ TEST(LoadMap, TheBoxCutsACloudAndBoundsTheMap) {
   const Folder folder;
   LoadOptions options;
   options.box = Box{Vec3(0, 0, 0), Vec3(2, 2, 2)};
-  const MapSource source = load_map(folder.write("a.pcd", pcd_ascii(some_points())), options).value();
+  const MapSource source =
+      load_map(folder.write("a.pcd", pcd_ascii(some_points())), options).value();
   EXPECT_EQ(source.points_outside, 1);
   const RawVoxels voxels = voxelize(*source.tree).value();
   EXPECT_EQ(voxels.geometry.size, (Index3{10, 10, 10}));

@@ -18,7 +18,8 @@ using testing::Folder;
 constexpr std::int64_t kMany = 1'000'000'000;
 
 TEST(RasterOf, CoversTheBoxAndLiesOnMultiplesOfTheResolution) {
-  const GridGeometry g = raster_of({Vec3(-0.41, 0.0, 0.39), Vec3(1.0, 0.2, 0.6)}, 0.2, kMany).value();
+  const GridGeometry g =
+      raster_of({Vec3(-0.41, 0.0, 0.39), Vec3(1.0, 0.2, 0.6)}, 0.2, kMany).value();
   EXPECT_TRUE(g.origin_map.isApprox(Vec3(-0.6, 0.0, 0.2)));
   EXPECT_EQ(g.size, (Index3{8, 1, 2}));
 }
@@ -88,8 +89,7 @@ TEST(MakeOctree, RefusesWhatATreeCannotHold) {
             ErrorCode::map_too_large);
   EXPECT_EQ(make_octree({Vec3(3276.7, 0, 0), 0.1, {2, 2, 2}}, bits, {}).code(),
             ErrorCode::map_too_large);
-  EXPECT_EQ(make_octree({Vec3::Zero(), 0.1, {3, 2, 2}}, bits, {}).code(),
-            ErrorCode::invalid_input);
+  EXPECT_EQ(make_octree({Vec3::Zero(), 0.1, {3, 2, 2}}, bits, {}).code(), ErrorCode::invalid_input);
   EXPECT_EQ(make_octree({Vec3::Zero(), 0.1, {2, 2, 2}}, bits, BitGrid({2, 2, 2}, false)).code(),
             ErrorCode::map_empty);
 }

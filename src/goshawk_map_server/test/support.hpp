@@ -57,10 +57,12 @@ inline std::string data(const std::string& name) {
   return {};
 }
 
-#define GOSHAWK_NEED_DATA(variable, name)                                                   \
-  const std::string variable = ::goshawk::map_server::testing::data(name);                 \
-  if (variable.empty()) GTEST_SKIP() << "the shared map " << (name) << " is not here: set " \
-                                        "GOSHAWK_DATA to the folder that holds it"
+#define GOSHAWK_NEED_DATA(variable, name)                                  \
+  const std::string variable = ::goshawk::map_server::testing::data(name); \
+  if (variable.empty())                                                    \
+  GTEST_SKIP() << "the shared map " << (name)                              \
+               << " is not here: set "                                     \
+                  "GOSHAWK_DATA to the folder that holds it"
 
 inline BitGrid random_bits(Index3 size, bool outside, double share, Random& random) {
   BitGrid bits(size, outside);

@@ -13,7 +13,8 @@ namespace {
 
 RawVoxels random_raw(Random& random) {
   const Index3 size{1 + random.below(90), 1 + random.below(12), 1 + random.below(12)};
-  RawVoxels raw{{Vec3::Zero(), 0.1, size}, testing::random_bits(size, true, 0.03, random),
+  RawVoxels raw{{Vec3::Zero(), 0.1, size},
+                testing::random_bits(size, true, 0.03, random),
                 testing::random_bits(size, false, 0.9, random)};
   for (int z = 0; z < size.z; ++z) {
     for (int y = 0; y < size.y; ++y) {
@@ -59,8 +60,7 @@ TEST(MakeVoxelGrid, BlocksWhatTheDefinitionBlocksUnderEachPolicy) {
   for (int round = 0; round < 60; ++round) {
     const RawVoxels raw = random_raw(random);
     // Whole multiples of the resolution are where rounding would show.
-    const double inflation_m =
-        round % 2 == 0 ? 0.1 * random.below(4) : random.uniform(0.0, 0.35);
+    const double inflation_m = round % 2 == 0 ? 0.1 * random.below(4) : random.uniform(0.0, 0.35);
     const Growth growth{UnknownPolicy(random.below(3)), inflation_m};
     const auto grid = make_voxel_grid(raw, growth, 7);
     if (!grid) {
@@ -83,8 +83,8 @@ TEST(MakeVoxelGrid, BlocksWhatTheDefinitionBlocksUnderEachPolicy) {
       }
     }
     // Padding reads as occupied to code that scans whole words.
-    EXPECT_EQ(grid->occupied, BitGrid::from_words(n, true, BitGrid(grid->occupied).take_words())
-                                  .value());
+    EXPECT_EQ(grid->occupied,
+              BitGrid::from_words(n, true, BitGrid(grid->occupied).take_words()).value());
   }
 }
 
@@ -104,7 +104,8 @@ TEST(MakeVoxelGrid, PoliciesAreOrderedFromStrictToLax) {
 }
 
 TEST(MakeVoxelGrid, SaysWhereAPointIsUnknown) {
-  RawVoxels raw{{Vec3::Zero(), 1.0, {8, 1, 1}}, BitGrid({8, 1, 1}, true), BitGrid({8, 1, 1}, false)};
+  RawVoxels raw{
+      {Vec3::Zero(), 1.0, {8, 1, 1}}, BitGrid({8, 1, 1}, true), BitGrid({8, 1, 1}, false)};
   raw.known.set_run(0, 6, 0, 0, true);
   raw.occupied.set({0, 0, 0}, true);
   const VoxelGrid strict = make_voxel_grid(raw, {UnknownPolicy::occupied, 0.5}, 1).value();
@@ -119,8 +120,8 @@ TEST(MakeVoxelGrid, SaysWhereAPointIsUnknown) {
 TEST(MakeVoxelGrid, BadInflationsAndWorldsWithoutFreeSpaceAreRefused) {
   Random random(23);
   const RawVoxels raw = random_raw(random);
-  for (const double bad : {-0.1, std::numeric_limits<double>::quiet_NaN(),
-                           std::numeric_limits<double>::infinity()}) {
+  for (const double bad :
+       {-0.1, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     EXPECT_EQ(make_voxel_grid(raw, {UnknownPolicy::free, bad}, 1).code(), ErrorCode::invalid_input);
   }
   EXPECT_EQ(make_voxel_grid(raw, {UnknownPolicy::occupied, 1e9}, 1).code(), ErrorCode::map_empty);
@@ -178,8 +179,7 @@ TEST(Voxelize, AnEmptyTreeOrABadBoxIsRefused) {
 }
 
 TEST(UnknownPolicy, WordsGoBothWays) {
-  for (const auto policy :
-       {UnknownPolicy::occupied, UnknownPolicy::blocked, UnknownPolicy::free}) {
+  for (const auto policy : {UnknownPolicy::occupied, UnknownPolicy::blocked, UnknownPolicy::free}) {
     EXPECT_EQ(unknown_policy(to_string(policy)), policy);
   }
   EXPECT_FALSE(unknown_policy("perhaps"));

@@ -11,7 +11,9 @@ using namespace goshawk::runtime;
 namespace msg = goshawk_msgs::msg;
 
 // Milliseconds since 1970: requests of a restarted navigator never repeat an id.
-std::uint64_t first_id(std::int64_t now_ns) { return std::uint64_t(now_ns / 1'000'000); }
+std::uint64_t first_id(std::int64_t now_ns) {
+  return std::uint64_t(now_ns / 1'000'000);
+}
 
 /// goal_pose, odom, trajectory, stage_report -> plan_request, committed_trajectory,
 /// navigator_state
@@ -23,12 +25,11 @@ class NavigatorComponent : public Component {
         navigator_(config_, first_id(node.now_ns())),
         reporter_(node, "navigator"),
         requests_(node.advertise<msg::PlanRequest>("plan_request", Qos::reliable_last())),
-        commits_(node.advertise<msg::CommittedTrajectory>("committed_trajectory",
-                                                          Qos::latched())),
+        commits_(node.advertise<msg::CommittedTrajectory>("committed_trajectory", Qos::latched())),
         states_(node.advertise<msg::NavigatorState>("navigator_state", Qos::latched(20))),
         path_lines_(node.advertise<nav_msgs::msg::Path>("path_line", Qos::best_effort())),
-        markers_(node.advertise<visualization_msgs::msg::MarkerArray>("markers",
-                                                                      Qos::best_effort())) {
+        markers_(
+            node.advertise<visualization_msgs::msg::MarkerArray>("markers", Qos::best_effort())) {
     subscribe();
     node.every(0.02, [this] {
       navigator_.tick(node_.now_ns());
@@ -88,8 +89,7 @@ class NavigatorComponent : public Component {
       wire_ns_ = wire_time_ns(m.header(), info);
       candidate_ = m;
       candidate_received_ = *received;
-      navigator_.on_trajectory(m.request().id(), std::move(received->trajectory),
-                               info.received_ns);
+      navigator_.on_trajectory(m.request().id(), std::move(received->trajectory), info.received_ns);
     }
     carry_out();
   }

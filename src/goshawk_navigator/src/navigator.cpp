@@ -7,7 +7,9 @@
 namespace goshawk::navigator {
 namespace {
 
-std::int64_t to_ns(double s) { return std::int64_t(std::llround(s * 1e9)); }
+std::int64_t to_ns(double s) {
+  return std::int64_t(std::llround(s * 1e9));
+}
 
 // A moving start's plan must come this long before the switch, so that the tracker has it.
 constexpr double kSwitchSlack_s = 0.02;
@@ -42,9 +44,9 @@ Navigator::Navigator(const Config& config, std::uint64_t first_id)
 
 Status Navigator::on_goal(const Vec3& goal_map, double yaw_rad, std::int64_t now_ns) {
   if (!goal_map.allFinite() || !std::isfinite(yaw_rad)) {
-    return fail(ErrorCode::invalid_input,
-                "goal " + to_text(goal_map) + " with yaw " + std::to_string(yaw_rad) +
-                    " is not finite: it is ignored");
+    return fail(ErrorCode::invalid_input, "goal " + to_text(goal_map) + " with yaw " +
+                                              std::to_string(yaw_rad) +
+                                              " is not finite: it is ignored");
   }
   goal_ = {goal_map, yaw_rad};
   goal_open_ = true;
@@ -74,8 +76,7 @@ void Navigator::on_trajectory(std::uint64_t id, Trajectory trajectory, std::int6
                                std::to_string(lead_s_) + " s next"),
                       now_ns);
   }
-  const std::int64_t start_ns =
-      open_->switch_ns.value_or(now_ns + to_ns(config_.commit_lead_s));
+  const std::int64_t start_ns = open_->switch_ns.value_or(now_ns + to_ns(config_.commit_lead_s));
   const std::int64_t end_ns = start_ns + to_ns(trajectory.duration_s());
   flight_ = Flight{id, std::move(trajectory), start_ns, end_ns, goal_};
   open_.reset();
@@ -130,8 +131,7 @@ void Navigator::plan(std::int64_t now_ns) {
   }
   FlatState start;
   const bool holds_end =
-      flight_ && (position_map_ - flight_->goal.position_map).norm() <
-                     config_.arrival_tolerance_m;
+      flight_ && (position_map_ - flight_->goal.position_map).norm() < config_.arrival_tolerance_m;
   start.position = holds_end ? flight_->goal.position_map : position_map_;
   ask(start, {}, now_ns);
 }
@@ -152,8 +152,8 @@ void Navigator::ask(const FlatState& start, std::optional<std::int64_t> switch_n
 void Navigator::plan_again(const Error& reason, std::int64_t now_ns) {
   open_.reset();
   if (attempts_ >= config_.max_attempts) {
-    return give_up({reason.code, reason.message + " (after " + std::to_string(attempts_) +
-                                     " attempts)"});
+    return give_up(
+        {reason.code, reason.message + " (after " + std::to_string(attempts_) + " attempts)"});
   }
   retry_ns_ = now_ns + to_ns(kRetryDelay_s);
 }
@@ -186,23 +186,24 @@ void Navigator::check_arrival(std::int64_t now_ns) {
     return enter(State::arrived);
   }
   if (now_ns - flight_->end_ns < to_ns(config_.settle_timeout_s)) return;
-  enter(State::failed,
-        fail(ErrorCode::tracking_lost,
-             "the trajectory has ended, but the vehicle is " + std::to_string(distance_m) +
-                 " m from the goal or not at rest"));
+  enter(State::failed, fail(ErrorCode::tracking_lost,
+                            "the trajectory has ended, but the vehicle is " +
+                                std::to_string(distance_m) + " m from the goal or not at rest"));
 }
 
 void Navigator::check_silence(std::int64_t now_ns) {
   if (!open_ || now_ns - open_->asked_ns < to_ns(config_.plan_timeout_s)) return;
-  plan_again(fail(ErrorCode::stage_silent,
-                  std::string(next_stage(open_->last_stage)) + " did not answer request " +
-                      std::to_string(open_->id) + " within " +
-                      std::to_string(config_.plan_timeout_s) +
-                      " s: is it running, in this domain and namespace?"),
-             now_ns);
+  plan_again(
+      fail(ErrorCode::stage_silent, std::string(next_stage(open_->last_stage)) +
+                                        " did not answer request " + std::to_string(open_->id) +
+                                        " within " + std::to_string(config_.plan_timeout_s) +
+                                        " s: is it running, in this domain and namespace?"),
+      now_ns);
 }
 
-bool Navigator::at_rest() const { return velocity_map_.norm() < config_.rest_speed_m_s; }
+bool Navigator::at_rest() const {
+  return velocity_map_.norm() < config_.rest_speed_m_s;
+}
 
 bool Navigator::odometry_is_fresh(std::int64_t now_ns) const {
   return odometry_ns_ && now_ns - *odometry_ns_ < to_ns(config_.odometry_timeout_s);

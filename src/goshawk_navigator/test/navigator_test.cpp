@@ -14,7 +14,9 @@ constexpr std::int64_t kStep = kSecond / 50;
 const Vec3 kHome(0, 0, 1);
 const Vec3 kGoal(4, 0, 1);
 
-Error ok() { return {ErrorCode::ok, ""}; }
+Error ok() {
+  return {ErrorCode::ok, ""};
+}
 
 /// Plays the other stages and the vehicle.
 class Harness {
@@ -293,7 +295,8 @@ TEST(Navigator, SameEventsSameOrders) {
     h.answer();
     h.pass(9.0);
     std::vector<double> numbers;
-    for (const auto& p : h.plans) numbers.insert(numbers.end(), p.start.position.begin(), p.start.position.end());
+    for (const auto& p : h.plans)
+      numbers.insert(numbers.end(), p.start.position.begin(), p.start.position.end());
     for (const auto& c : h.commits) numbers.push_back(double(c.start_time_ns));
     for (const auto& s : h.states) numbers.push_back(double(s.state));
     return numbers;

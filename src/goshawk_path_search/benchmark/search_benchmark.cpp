@@ -2,8 +2,8 @@
 //   search_benchmark [--benchmark_filter=boxes]
 #include <benchmark/benchmark.h>
 
-#include <functional>
 #include <algorithm>
+#include <functional>
 
 #include "goshawk/core/random.hpp"
 #include "goshawk/path_search/planner.hpp"
@@ -12,13 +12,13 @@
 
 namespace {
 
+using goshawk::BitGrid;
+using goshawk::Index3;
 using goshawk::path_search::Config;
 using goshawk::path_search::CornerRule;
 using goshawk::path_search::GridPlanner;
 using goshawk::path_search::make_planner;
 using goshawk::path_search::VoxelPath;
-using goshawk::BitGrid;
-using goshawk::Index3;
 using worlds::World;
 
 struct Class {
@@ -48,23 +48,37 @@ std::vector<Class> classes() {
   };
   std::vector<Class> all;
   for (const double ratio : {0.1, 0.2, 0.4}) {
-    all.push_back({"noise/50x50x25/" + std::to_string(ratio).substr(0, 3),
-                   seeds(25, [ratio](auto s) { return worlds::noise({50, 50, 25}, ratio, s); })});
+    all.push_back(
+        {"noise/50x50x25/" + std::to_string(ratio).substr(0, 3), seeds(25, [ratio](auto s) {
+           return worlds::noise({50, 50, 25}, ratio, s);
+         })});
   }
-  all.push_back({"noise/100x100x25/0.4",
-                 seeds(10, [](auto s) { return worlds::noise({100, 100, 25}, 0.4, s); })});
+  all.push_back({"noise/100x100x25/0.4", seeds(10, [](auto s) {
+                   return worlds::noise({100, 100, 25}, 0.4, s);
+                 })});
   for (const double ratio : {0.1, 0.2, 0.4}) {
-    all.push_back({"boxes/100x100x25/" + std::to_string(ratio).substr(0, 3),
-                   seeds(10, [ratio](auto s) { return worlds::boxes({100, 100, 25}, ratio, s); })});
+    all.push_back(
+        {"boxes/100x100x25/" + std::to_string(ratio).substr(0, 3), seeds(10, [ratio](auto s) {
+           return worlds::boxes({100, 100, 25}, ratio, s);
+         })});
   }
-  all.push_back({"office/200x200x15",
-                 seeds(4, [](auto s) { return worlds::office({200, 200, 15}, s); })});
+  all.push_back({"office/200x200x15", seeds(4, [](auto s) {
+                   return worlds::office({200, 200, 15}, s);
+                 })});
   all.push_back({"warframe/Simple", [] { return std::vector{worlds::warframe("Simple", 200)}; }});
   all.push_back({"warframe/Complex", [] { return std::vector{worlds::warframe("Complex", 200)}; }});
   all.push_back({"boxes/500x500x50/0.2",
-                 seeds(2, [](auto s) { return worlds::boxes({500, 500, 50}, 0.2, s); }), true});
+                 seeds(2,
+                       [](auto s) {
+                         return worlds::boxes({500, 500, 50}, 0.2, s);
+                       }),
+                 true});
   all.push_back({"noise/500x500x50/0.02",
-                 seeds(2, [](auto s) { return worlds::noise({500, 500, 50}, 0.02, s); }), true});
+                 seeds(2,
+                       [](auto s) {
+                         return worlds::noise({500, 500, 50}, 0.02, s);
+                       }),
+                 true});
   return all;
 }
 
@@ -100,8 +114,7 @@ void run(benchmark::State& state, const Class& c, const std::string& planner,
     }
   }
   state.counters["us_per_query"] = benchmark::Counter(
-      queries * 1e-6,
-      benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+      queries * 1e-6, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
   state.counters["expanded"] = expanded / queries;
   state.counters["voxels"] = length / queries;
 }
@@ -120,8 +133,7 @@ void run_plain(benchmark::State& state, const Class& c, CornerRule rule) {
     }
   }
   state.counters["us_per_query"] = benchmark::Counter(
-      queries * 1e-6,
-      benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+      queries * 1e-6, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
   state.counters["voxels"] = length / queries;
 }
 
@@ -154,10 +166,9 @@ int main(int argc, char** argv) {
     for (const std::string rule : {"squeeze", "no_squeeze"}) {
       for (const std::string planner : {"jastar", "astar", "dijkstra"}) {
         if (planner == "dijkstra" && c.big) continue;
-        benchmark::RegisterBenchmark((c.name + "/" + rule + "/" + planner).c_str(),
-                                     [&c, planner, rule](benchmark::State& s) {
-                                       run(s, c, planner, rule);
-                                     })
+        benchmark::RegisterBenchmark(
+            (c.name + "/" + rule + "/" + planner).c_str(),
+            [&c, planner, rule](benchmark::State& s) { run(s, c, planner, rule); })
             ->Unit(benchmark::kMillisecond);
       }
       if (c.big) continue;
@@ -166,10 +177,12 @@ int main(int argc, char** argv) {
                                    [&c, corner](benchmark::State& s) { run_plain(s, c, corner); })
           ->Unit(benchmark::kMillisecond);
     }
-    for (const auto& [what, changes] : {std::pair{"new", -1}, {"same", 0}, {"changed_1000", 1000}}) {
-      benchmark::RegisterBenchmark((c.name + "/set_map/" + what).c_str(),
-                                   [&c, n = changes](benchmark::State& s) { run_set_map(s, c, n); })
-          ->Unit(benchmark::kMillisecond);
+    for (const auto& [what, changes] :
+         {std::pair{"new", -1}, {"same", 0}, {"changed_1000", 1000}}) {
+      benchmark::RegisterBenchmark((c.name + "/set_map/" + what).c_str(), [&c, n = changes](
+                                                                              benchmark::State& s) {
+        run_set_map(s, c, n);
+      })->Unit(benchmark::kMillisecond);
     }
   }
   benchmark::Initialize(&argc, argv);

@@ -22,7 +22,9 @@ void fill(BitGrid& map, Index3 lo, Index3 hi, bool value) {
   }
 }
 
-double ratio_of(const BitGrid& map) { return double(map.count()) / double(map.voxels()); }
+double ratio_of(const BitGrid& map) {
+  return double(map.count()) / double(map.voxels());
+}
 
 std::string dimensions(Index3 s) {
   return std::to_string(s.x) + "x" + std::to_string(s.y) + "x" + std::to_string(s.z);
@@ -53,7 +55,8 @@ World::Query corner_to_corner(const BitGrid& map) {
 World noise(Index3 size, double ratio, std::uint64_t seed) {
   Random random(seed);
   World world{"noise " + dimensions(size) + " " + std::to_string(ratio).substr(0, 4),
-              BitGrid(size, true), {}};
+              BitGrid(size, true),
+              {}};
   for (int z = 0; z < size.z; ++z) {
     for (int y = 0; y < size.y; ++y) {
       for (int x = 0; x < size.x; ++x) world.blocked.set({x, y, z}, random.chance(ratio));
@@ -78,8 +81,8 @@ World boxes(Index3 size, double ratio, std::uint64_t seed) {
                       pillar ? size.z : 2 + random.below(9)};
     fill(map, lo - Index3{1, 1, 1}, lo + edge + Index3{1, 1, 1}, true);
   }
-  World world{"boxes " + dimensions(size) + " " + std::to_string(ratio).substr(0, 4),
-              std::move(map), {}};
+  World world{
+      "boxes " + dimensions(size) + " " + std::to_string(ratio).substr(0, 4), std::move(map), {}};
   world.queries = {corner_to_corner(world.blocked)};
   return world;
 }

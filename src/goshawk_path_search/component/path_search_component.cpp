@@ -64,7 +64,8 @@ class PathSearchComponent : public Component {
     m.expanded(std::uint64_t(path.counters.expanded));
     m.compute_ns(compute_ns);
     m.header(conversions::make_header(node_.now_ns()));
-    if (auto status = publisher_.publish(m); !status) reporter_.failed(request.id(), status.error());
+    if (auto status = publisher_.publish(m); !status)
+      reporter_.failed(request.id(), status.error());
   }
 
   Node& node_;

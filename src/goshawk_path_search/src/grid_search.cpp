@@ -47,7 +47,7 @@ class GridSearch final : public GridPlanner {
   Index3 start_;
   Index3 goal_;
   Node goal_node_ = 0;
-  Cost bound_ = 0;       // only paths below it are of interest: the best so far
+  Cost bound_ = 0;  // only paths below it are of interest: the best so far
   bool reached_ = false;
   bool too_long_ = false;  // something was left out because its cost does not fit a label
   Counters counters_;
@@ -55,8 +55,9 @@ class GridSearch final : public GridPlanner {
 
 Error too_large(Index3 size) {
   return fail(ErrorCode::map_too_large,
-              "a map of " + to_text(size) + " voxels is too large to search (8 bytes a voxel, at "
-              "most 2^32 voxels): use a coarser resolution or a smaller box");
+              "a map of " + to_text(size) +
+                  " voxels is too large to search (8 bytes a voxel, at "
+                  "most 2^32 voxels): use a coarser resolution or a smaller box");
 }
 
 template <typename Heuristic, bool kJumps>
@@ -237,8 +238,8 @@ void GridSearch<Heuristic, kJumps>::trace(VoxelPath& path) const {
     }
   }
   std::reverse(path.cells.begin(), path.cells.end());
-  path.cost_voxels = double(moves[1]) + double(moves[2]) * std::sqrt(2.0) +
-                     double(moves[3]) * std::sqrt(3.0);
+  path.cost_voxels =
+      double(moves[1]) + double(moves[2]) * std::sqrt(2.0) + double(moves[3]) * std::sqrt(3.0);
 }
 
 }  // namespace

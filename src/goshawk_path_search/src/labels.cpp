@@ -24,6 +24,8 @@ bool LabelTable::resize(std::int64_t nodes) {
   return true;
 }
 
-void LabelTable::Unmap::operator()(Label* labels) const { ::munmap(labels, bytes); }
+void LabelTable::Unmap::operator()(Label* labels) const {
+  ::munmap(labels, bytes);
+}
 
 }  // namespace goshawk::path_search

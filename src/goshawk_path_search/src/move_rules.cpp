@@ -9,11 +9,17 @@ namespace {
 
 constexpr int kBypassLanes = 3;
 
-constexpr BlockMask bit(int direction) { return BlockMask{1} << direction; }
+constexpr BlockMask bit(int direction) {
+  return BlockMask{1} << direction;
+}
 
-bool inside_block(Index3 c) { return std::abs(c.x) <= 1 && std::abs(c.y) <= 1 && std::abs(c.z) <= 1; }
+bool inside_block(Index3 c) {
+  return std::abs(c.x) <= 1 && std::abs(c.y) <= 1 && std::abs(c.z) <= 1;
+}
 
-Cost cost_of(int direction) { return kMoveCost[std::size_t(axes_changed(direction))]; }
+Cost cost_of(int direction) {
+  return kMoveCost[std::size_t(axes_changed(direction))];
+}
 
 // Walks every path from p to the target around the centre and collects what it needs to be free.
 class BypassFinder {

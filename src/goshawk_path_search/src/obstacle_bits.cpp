@@ -156,8 +156,7 @@ int ObstacleBits::straight_jump(CornerRule rule, int axis, int sign, Index3 from
   }
   const Rows rows = load(behind);
   const std::uint64_t top = std::uint64_t{1} << 63;
-  const std::uint64_t stop =
-      (forced(rule, rows, up, down) | rows.own | top >> kLast) & ~top;
+  const std::uint64_t stop = (forced(rule, rows, up, down) | rows.own | top >> kLast) & ~top;
   const int steps = std::countl_zero(stop);
   return (rows.own << steps & top) != 0 ? 1 - steps : steps;
 }

@@ -15,8 +15,8 @@ Result<VoxelPath> GridPlanner::search(Index3 start, Index3 goal) {
 Result<CornerRule> parse_corner_rule(std::string_view word) {
   if (word == "no_squeeze") return CornerRule::no_squeeze;
   if (word == "squeeze") return CornerRule::squeeze;
-  return fail(ErrorCode::invalid_parameter, "corner_rule is '" + std::string(word) +
-                                                "': it must be no_squeeze or squeeze");
+  return fail(ErrorCode::invalid_parameter,
+              "corner_rule is '" + std::string(word) + "': it must be no_squeeze or squeeze");
 }
 
 Result<std::unique_ptr<GridPlanner>> make_planner(const Config& config) {

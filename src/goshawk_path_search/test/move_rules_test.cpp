@@ -30,7 +30,9 @@ BlockMask blocked_bits(const BitGrid& block) {
   return mask;
 }
 
-double length_of(int direction) { return std::sqrt(double(axes_changed(direction))); }
+double length_of(int direction) {
+  return std::sqrt(double(axes_changed(direction)));
+}
 
 // What the canonical order must do at the block's centre, judged by a search of the block.
 void expect_sound(CornerRule rule, int direction, const BitGrid& block) {

@@ -70,10 +70,9 @@ TEST(ObstacleBits, JumpStraightToTheFirstForcedNeighbourOrObstacle) {
     Random random(9);
     for (int n = 0; n < 3000; ++n) {
       const bool sparse = random.chance(0.5);
-      const BitGrid map =
-          sparse ? reference::noise_map(reference::odd_size(random), random.uniform(0.0, 0.03),
-                                        random)
-                 : reference::any_map(random);
+      const BitGrid map = sparse ? reference::noise_map(reference::odd_size(random),
+                                                        random.uniform(0.0, 0.03), random)
+                                 : reference::any_map(random);
       const Index3 at = reference::free_voxel(map, random);
       if (map.get(at)) continue;
       ObstacleBits bits;

@@ -115,9 +115,9 @@ TEST(PathSearch, SaysWhyThereIsNoPath) {
 }
 
 TEST(PathSearch, RefusesUnknownWords) {
-  for (const auto& [field, code] : {std::pair{&Config::planner, "a*"},
-                                    std::pair{&Config::corner_rule, "none"},
-                                    std::pair{&Config::pruning, ""}}) {
+  for (const auto& [field, code] :
+       {std::pair{&Config::planner, "a*"}, std::pair{&Config::corner_rule, "none"},
+        std::pair{&Config::pruning, ""}}) {
     Config config;
     config.*field = code;
     EXPECT_EQ(PathSearch::create(config).code(), ErrorCode::invalid_parameter);
@@ -141,16 +141,16 @@ TEST(PathSearch, KeepsRawMovesThatTouchCornersUnderSqueeze) {
 TEST(Config, DescribesEveryFieldOnce) {
   Config config;
   int fields = 0;
-  describe(config, [&](const char*, std::string& value, const char*, const char*,
-                       const OneOf& words) {
-    ++fields;
-    EXPECT_EQ(std::count(words.choices.begin(), words.choices.end(), value), 1);
-    for (const std::string& word : words.choices) {
-      const std::string before = std::exchange(value, word);
-      EXPECT_TRUE(PathSearch::create(config).ok()) << word;
-      value = before;
-    }
-  });
+  describe(config,
+           [&](const char*, std::string& value, const char*, const char*, const OneOf& words) {
+             ++fields;
+             EXPECT_EQ(std::count(words.choices.begin(), words.choices.end(), value), 1);
+             for (const std::string& word : words.choices) {
+               const std::string before = std::exchange(value, word);
+               EXPECT_TRUE(PathSearch::create(config).ok()) << word;
+               value = before;
+             }
+           });
   EXPECT_EQ(fields, 3);
 }
 

@@ -114,13 +114,20 @@ BitGrid box_map(Index3 size, double ratio, Random& random) {
 Index3 odd_size(Random& random) {
   const auto small = [&] { return 1 + random.below(10); };
   switch (random.below(8)) {
-    case 0: return {small(), small(), 1};
-    case 1: return {1, small(), small()};
-    case 2: return {1 + random.below(40), 1, 1 + random.below(20)};
-    case 3: return {61 + random.below(8), 1 + random.below(4), 1 + random.below(4)};
-    case 4: return {1 + random.below(4), 61 + random.below(8), 1 + random.below(4)};
-    case 5: return {1 + random.below(4), 1 + random.below(4), 125 + random.below(8)};
-    default: return {small(), small(), small()};
+    case 0:
+      return {small(), small(), 1};
+    case 1:
+      return {1, small(), small()};
+    case 2:
+      return {1 + random.below(40), 1, 1 + random.below(20)};
+    case 3:
+      return {61 + random.below(8), 1 + random.below(4), 1 + random.below(4)};
+    case 4:
+      return {1 + random.below(4), 61 + random.below(8), 1 + random.below(4)};
+    case 5:
+      return {1 + random.below(4), 1 + random.below(4), 125 + random.below(8)};
+    default:
+      return {small(), small(), small()};
   }
 }
 

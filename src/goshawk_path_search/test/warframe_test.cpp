@@ -16,7 +16,8 @@ std::string folder() {
   if (data != nullptr) return std::string(data) + "/warframe/";
   // From the test's working directory up to the project, whose sibling `shared` holds the data.
   for (std::string up = "../"; up.size() < 30; up += "../") {
-    if (std::ifstream(up + "shared/data/warframe/Simple.3dmap")) return up + "shared/data/warframe/";
+    if (std::ifstream(up + "shared/data/warframe/Simple.3dmap"))
+      return up + "shared/data/warframe/";
   }
   return "";
 }

@@ -39,8 +39,8 @@ Result<std::vector<Wanted>> wanted_components(const std::vector<std::string>& ar
     }
     const auto colon = argument.find(':');
     const std::string component = argument.substr(0, colon);
-    wanted.push_back({component, colon == std::string::npos ? component
-                                                            : argument.substr(colon + 1)});
+    wanted.push_back(
+        {component, colon == std::string::npos ? component : argument.substr(colon + 1)});
   }
   if (wanted.empty()) {
     return fail(ErrorCode::invalid_input,

@@ -45,8 +45,7 @@ std::vector<std::string> installed_components() {
     for (const auto& file : std::filesystem::directory_iterator(folder, ignored)) {
       const std::string name = file.path().filename().string();
       if (!name.starts_with(kPrefix) || !name.ends_with(kSuffix)) continue;
-      names.push_back(
-          name.substr(kPrefix.size(), name.size() - kPrefix.size() - kSuffix.size()));
+      names.push_back(name.substr(kPrefix.size(), name.size() - kPrefix.size() - kSuffix.size()));
     }
   }
   std::ranges::sort(names);
@@ -74,8 +73,8 @@ Result<const ComponentExport*> load_component(const std::string& name) {
   const std::string near = nearest_name(name, known);
   return fail(ErrorCode::invalid_parameter,
               "there is no component '" + name + "'" +
-                  (near.empty() ? "" : "; did you mean " + near + "?") + " Installed: " +
-                  joined(known));
+                  (near.empty() ? "" : "; did you mean " + near + "?") +
+                  " Installed: " + joined(known));
 }
 
 }  // namespace goshawk::runtime

@@ -4,12 +4,12 @@
 #include <ifaddrs.h>
 #include <unistd.h>
 
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastrtps/utils/IPLocator.h>
 #include <algorithm>
 #include <charconv>
 #include <cstdlib>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
-#include <fastrtps/utils/IPLocator.h>
 #include <set>
 
 #include "any_type.hpp"
@@ -21,7 +21,7 @@ namespace {
 // Unicast discovery knocks at the ports of this many participants of the domain: more processes
 // than any launch file here starts, few enough that the knocking costs nothing.
 constexpr unsigned kMaxParticipants = 60;
-constexpr int kLastDomain = 232;  // the ports of more would be above 65535
+constexpr int kLastDomain = 232;             // the ports of more would be above 65535
 constexpr unsigned kSocketBuffer = 4 << 20;  // [byte] asked for; the kernel may give less
 
 std::vector<std::string> split(const std::string& list) {
@@ -54,8 +54,10 @@ Status check_interfaces(const std::string& interfaces) {
   std::string known;
   for (const auto& address : here) known += (known.empty() ? "" : ", ") + address;
   return fail(ErrorCode::invalid_parameter,
-              "interfaces '" + interfaces + "' are not 'loopback', 'all' or IPv4 addresses of this "
-              "machine, which has " + known);
+              "interfaces '" + interfaces +
+                  "' are not 'loopback', 'all' or IPv4 addresses of this "
+                  "machine, which has " +
+                  known);
 }
 
 void use_udp(dds::DomainParticipantQos& qos, const std::string& interfaces) {
@@ -128,7 +130,8 @@ Result<std::unique_ptr<Context>> Context::create(const ContextOptions& options) 
   if (impl->participant == nullptr) {
     return fail(ErrorCode::io_failed,
                 "cannot join domain " + std::to_string(options.domain) + " on interfaces '" +
-                    options.interfaces + "': are its UDP ports (7400 + 250 x domain and up) taken, "
+                    options.interfaces +
+                    "': are its UDP ports (7400 + 250 x domain and up) taken, "
                     "is the interface up, is the profile file right?");
   }
   impl->publisher = impl->participant->create_publisher(dds::PUBLISHER_QOS_DEFAULT);
@@ -138,11 +141,15 @@ Result<std::unique_ptr<Context>> Context::create(const ContextOptions& options) 
 
 Context::Context(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Context::~Context() = default;
-int Context::domain() const { return impl_->domain; }
+int Context::domain() const {
+  return impl_->domain;
+}
 std::vector<ParticipantInfo> Context::participants() const {
   return impl_->listener.participants();
 }
-std::vector<EndpointInfo> Context::endpoints() const { return impl_->listener.endpoints(); }
+std::vector<EndpointInfo> Context::endpoints() const {
+  return impl_->listener.endpoints();
+}
 
 Context::Impl::~Impl() {
   if (participant == nullptr) return;

@@ -43,7 +43,9 @@ class RawType : public eprosima::fastdds::dds::TopicDataType {
 MessageType::MessageType(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 MessageType::~MessageType() = default;
 MessageType::MessageType(MessageType&&) noexcept = default;
-const std::string& MessageType::name() const { return impl_->name; }
+const std::string& MessageType::name() const {
+  return impl_->name;
+}
 
 MessageType raw_message_type(const std::string& wire_name) {
   auto impl = std::make_unique<MessageType::Impl>();

@@ -28,13 +28,13 @@ const MessageType& message_type() {
   return type;
 }
 
-#define GOSHAWK_MESSAGE(package, name)              \
-  namespace {                                       \
-  template <>                                       \
-  struct PubSubTypeOf<package::msg::name> {         \
-    using Type = package::msg::name##PubSubType;    \
-  };                                                \
-  }                                                 \
+#define GOSHAWK_MESSAGE(package, name)           \
+  namespace {                                    \
+  template <>                                    \
+  struct PubSubTypeOf<package::msg::name> {      \
+    using Type = package::msg::name##PubSubType; \
+  };                                             \
+  }                                              \
   template const MessageType& message_type<package::msg::name>();
 
 GOSHAWK_MESSAGE(std_msgs, String)

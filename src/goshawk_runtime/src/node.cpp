@@ -3,6 +3,7 @@
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include <fastrtps/types/TypesBase.h>
 #include <atomic>
 #include <bit>
 #include <chrono>
@@ -13,7 +14,6 @@
 #include <fastdds/dds/publisher/DataWriter.hpp>
 #include <fastdds/dds/subscriber/DataReader.hpp>
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
-#include <fastrtps/types/TypesBase.h>
 
 #include "any_type.hpp"
 #include "context_impl.hpp"
@@ -59,9 +59,9 @@ class Writer {
   Status publish(const void* message) {
     Sample sample{type_.get(), const_cast<void*>(message)};
     if (writer_->write(&sample)) return success();
-    return fail(ErrorCode::io_failed,
-                "the middleware did not take a message on " + topic_ + ": is it too large, or does "
-                "a reliable reader hold the writer back?");
+    return fail(ErrorCode::io_failed, "the middleware did not take a message on " + topic_ +
+                                          ": is it too large, or does "
+                                          "a reliable reader hold the writer back?");
   }
 
   bool wait_acknowledged(double timeout_s) {
@@ -83,8 +83,12 @@ class Writer {
 
 }  // namespace detail
 
-Status RawPublisher::publish_raw(const void* message) const { return writer_->publish(message); }
-int RawPublisher::matched() const { return writer_->matched(); }
+Status RawPublisher::publish_raw(const void* message) const {
+  return writer_->publish(message);
+}
+int RawPublisher::matched() const {
+  return writer_->matched();
+}
 bool RawPublisher::wait_acknowledged(double timeout_s) const {
   return writer_->wait_acknowledged(timeout_s);
 }
@@ -193,8 +197,10 @@ bool Node::Impl::take_some(const Node& node, Subscription& s) {
     if (!sample.decoded) {
       // The 1st, 2nd, 4th, 8th ...: a hostile sender must not fill the disk.
       if (std::has_single_bit(++s.undecoded)) {
-        node.log_->warn("a message on {} could not be decoded and was dropped ({} so far): does "
-                        "its sender use the same IDL?", s.topic, s.undecoded);
+        node.log_->warn(
+            "a message on {} could not be decoded and was dropped ({} so far): does "
+            "its sender use the same IDL?",
+            s.topic, s.undecoded);
       }
       continue;
     }
@@ -208,8 +214,8 @@ Node::Node(Context& context, std::string name, RosArgs args, std::shared_ptr<con
     : name_(std::move(name)),
       args_(std::move(args)),
       clock_(std::move(clock)),
-      log_(std::make_shared<spdlog::logger>(
-          name_, std::make_shared<spdlog::sinks::stderr_sink_mt>())),
+      log_(std::make_shared<spdlog::logger>(name_,
+                                            std::make_shared<spdlog::sinks::stderr_sink_mt>())),
       impl_(std::make_unique<Impl>(context)) {
   log_->set_pattern("%Y-%m-%d %H:%M:%S.%e [%n] %l: %v");
   log_->set_level(spdlog::level::from_str(args_.log_level));

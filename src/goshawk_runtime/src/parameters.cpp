@@ -31,8 +31,9 @@ Status add_section(const YAML::Node& section, const std::string& where, Paramete
   const YAML::Node parameters = section.IsMap() ? section["ros__parameters"] : YAML::Node();
   if (!parameters || !(parameters.IsMap() || parameters.IsNull())) {
     return fail(ErrorCode::invalid_parameter,
-                where + " holds no map ros__parameters: write\n  NODE:\n    ros__parameters:\n"
-                        "      NAME: VALUE");
+                where +
+                    " holds no map ros__parameters: write\n  NODE:\n    ros__parameters:\n"
+                    "      NAME: VALUE");
   }
   std::set<std::string> seen;
   for (const auto& pair : parameters) {
@@ -85,8 +86,8 @@ Status check_sections(const std::string& params_file, const std::vector<std::str
       const std::string node = name.substr(name.rfind('/') + 1);
       if (name == "/**" || std::ranges::find(known, node) != known.end()) continue;
       const std::string near = nearest_name(node, known);
-      faults += "\n  " + name + ": no such node" +
-                (near.empty() ? "" : "; did you mean " + near + "?");
+      faults +=
+          "\n  " + name + ": no such node" + (near.empty() ? "" : "; did you mean " + near + "?");
     }
   } catch (const YAML::BadFile&) {
     return fail(ErrorCode::io_failed, params_file + " cannot be read: does it exist?");
@@ -156,14 +157,20 @@ std::string range_fault(const std::string& value, const OneOf& one_of) {
          (near.empty() ? "" : "; did you mean " + near + "?");
 }
 
-std::string to_text(bool value) { return value ? "true" : "false"; }
-std::string to_text(int value) { return std::to_string(value); }
+std::string to_text(bool value) {
+  return value ? "true" : "false";
+}
+std::string to_text(int value) {
+  return std::to_string(value);
+}
 std::string to_text(double value) {
   char text[32];
   const auto [end, error] = std::to_chars(text, text + sizeof text, value);
   return {text, end};
 }
-std::string to_text(const std::string& value) { return value; }
+std::string to_text(const std::string& value) {
+  return value;
+}
 
 std::string to_text(const Range& range) {
   const bool upper = range.hi < 1e300;

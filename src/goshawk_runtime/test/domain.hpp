@@ -7,7 +7,9 @@
 namespace goshawk::runtime_test {
 
 /// A domain that the process id picks, so that tests at the same time do not meet.
-inline int domain() { return 100 + int(getpid() % 101); }
+inline int domain() {
+  return 100 + int(getpid() % 101);
+}
 
 inline std::unique_ptr<runtime::Context> join(std::vector<std::string> node_names = {}) {
   runtime::ContextOptions options;

@@ -125,9 +125,8 @@ TEST(Parameters, ASectionForANodeThatNobodyKnowsIsNamed) {
   const File bad("serch:\n  ros__parameters: {}\ntracker:\n  ros__parameters: {}\n");
   const auto status = check_sections(bad.path(), known);
   EXPECT_EQ(status.code(), ErrorCode::invalid_parameter);
-  EXPECT_THAT(status.error().message,
-              AllOf(HasSubstr("serch: no such node; did you mean search?"),
-                    Not(HasSubstr("tracker"))));
+  EXPECT_THAT(status.error().message, AllOf(HasSubstr("serch: no such node; did you mean search?"),
+                                            Not(HasSubstr("tracker"))));
   EXPECT_EQ(check_sections("/no/such/file.yaml", known).code(), ErrorCode::io_failed);
 }
 

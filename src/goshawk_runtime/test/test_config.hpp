@@ -18,7 +18,7 @@ struct Config {
 };
 
 template <typename Self, typename Visitor>
-  requires std::same_as<std::remove_const_t<Self>, Config>
+requires std::same_as<std::remove_const_t<Self>, Config>
 void describe(Self& c, Visitor&& visit) {
   visit("radius_m", c.radius_m, "m", "radius of the body", Range{0.0, 10.0});
   visit("speed_m_s", c.speed_m_s, "m/s", "largest speed", Range::positive());

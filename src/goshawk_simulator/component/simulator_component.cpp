@@ -19,7 +19,7 @@ struct ComponentConfig {
 };
 
 template <typename Self, typename Visitor>
-  requires std::same_as<std::remove_const_t<Self>, ComponentConfig>
+requires std::same_as<std::remove_const_t<Self>, ComponentConfig>
 void describe(Self& c, Visitor&& visit) {
   visit("start_x_m", c.start_x_m, "m", "where the vehicle hovers at first: map x", Anything{});
   visit("start_y_m", c.start_y_m, "m", "likewise map y", Anything{});
@@ -81,7 +81,8 @@ class SimulatorComponent : public Component {
     // After a pause (a stopped machine, a clock that was set) the world goes on, it does not jump.
     const double dt_s = std::clamp(double(now_ns - last_ns_) * 1e-9, 0.0, 0.1);
     last_ns_ = now_ns;
-    if (auto status = quadrotor_.advance(dt_s); !status) throw std::logic_error(status.error().message);
+    if (auto status = quadrotor_.advance(dt_s); !status)
+      throw std::logic_error(status.error().message);
     odometry_message_.header().stamp(conversions::to_stamp(now_ns));
     conversions::fill_msg(quadrotor_.state(), odometry_message_);
     send(odometry_, odometry_message_);

@@ -75,7 +75,9 @@ BitGrid keep_free_voxels(const WorldSpec& spec, const GridGeometry& geometry) {
 
 }  // namespace
 
-Shape solid_box(Index3 lower, Index3 size) { return {lower, BitGrid(size, false, true)}; }
+Shape solid_box(Index3 lower, Index3 size) {
+  return {lower, BitGrid(size, false, true)};
+}
 
 Builder::Builder(const WorldSpec& spec, const GridGeometry& geometry)
     : geometry_(geometry),
@@ -153,7 +155,7 @@ void Builder::refresh() {
 
 Status fill_to_density(Builder& builder, double density,
                        const std::function<Shape(double scale)>& draw) {
-  constexpr int kPatience = 20000;       // fruitless draws in a row
+  constexpr int kPatience = 20000;  // fruitless draws in a row
   constexpr int kDrawsBeforeShrinking = 12;
   const double aim = density - 0.5 * kDensityTolerance;
   const double most = density + 0.5 * kDensityTolerance;

@@ -7,15 +7,17 @@ namespace goshawk::worlds {
 namespace {
 
 struct Tree {
-  double x, y;           // [voxels] the trunk's axis
-  double trunk_radius;   // [voxels]
-  double height;         // [voxels]
-  double crown_radius;   // [voxels] 0: no crown
-  double crown_center;   // [voxels] height of the crown's middle
+  double x, y;          // [voxels] the trunk's axis
+  double trunk_radius;  // [voxels]
+  double height;        // [voxels]
+  double crown_radius;  // [voxels] 0: no crown
+  double crown_center;  // [voxels] height of the crown's middle
 };
 
 // Distance from a point to the interval [i, i + 1] on one axis: what a whole cube needs.
-double gap(double point, int i) { return std::max({0.0, double(i) - point, point - (i + 1.0)}); }
+double gap(double point, int i) {
+  return std::max({0.0, double(i) - point, point - (i + 1.0)});
+}
 
 // A voxel belongs to the tree when its cube comes nearer to the axis than the trunk's radius, or
 // nearer to the crown's middle than the crown's radius. Squares are compared: no root, no rounding
@@ -24,8 +26,8 @@ Shape rasterize(const Tree& tree) {
   const double reach = std::max(tree.trunk_radius, tree.crown_radius);
   const int x0 = int(std::floor(tree.x - reach));
   const int y0 = int(std::floor(tree.y - reach));
-  const int top = std::max(1, int(std::ceil(std::max(
-                                  tree.height, tree.crown_center + tree.crown_radius))));
+  const int top =
+      std::max(1, int(std::ceil(std::max(tree.height, tree.crown_center + tree.crown_radius))));
   const int width = int(std::ceil(2.0 * reach)) + 2;
   Shape shape{{x0, y0, 0}, BitGrid({width, width, top}, false)};
   for (int z = 0; z < top; ++z) {

@@ -32,8 +32,7 @@ class Office {
         frame_{geometry.size.y >= geometry.size.x, geometry.size},
         thickness_(std::max(1, int(std::lround(0.1 / spec.resolution_m)))),
         // Growth narrows a door on both sides; three voxels of it must stay.
-        door_(builder_.voxels_of(
-            std::max(1.0, 2.0 * spec.inflation_m + 3.0 * spec.resolution_m))),
+        door_(builder_.voxels_of(std::max(1.0, 2.0 * spec.inflation_m + 3.0 * spec.resolution_m))),
         door_height_(std::min(geometry.size.z, builder_.voxels_of(kDoorHeight_m))),
         room_(std::max(builder_.voxels_of(kShortestRoom_m), door_ + 2)),
         corridor_(std::max(builder_.voxels_of(kCorridor_m), door_)) {}
@@ -69,9 +68,7 @@ class Office {
     draw_rooms(wall_right + thickness_, frame_.width(), wall_right);
   }
 
-  Shape wall(int v) const {
-    return frame_.box(0, v, frame_.length(), thickness_, frame_.world.z);
-  }
+  Shape wall(int v) const { return frame_.box(0, v, frame_.length(), thickness_, frame_.world.z); }
 
   // Rooms between v0 and v1, each with a door through the corridor's wall at v_wall.
   void draw_rooms(int v0, int v1, int v_wall) {

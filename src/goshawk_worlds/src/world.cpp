@@ -11,7 +11,9 @@ namespace {
 // A generator touches every voxel; beyond this it would rather be a mistake in the units.
 constexpr std::int64_t kMaxWorldVoxels = 1'000'000'000;
 
-Error bad(const std::string& what) { return fail(ErrorCode::invalid_parameter, what); }
+Error bad(const std::string& what) {
+  return fail(ErrorCode::invalid_parameter, what);
+}
 
 Status check(const WorldSpec& spec) {
   if (!(std::isfinite(spec.resolution_m) && spec.resolution_m > 0.0)) {
@@ -43,13 +45,13 @@ Result<GridGeometry> geometry_of(const WorldSpec& spec) {
                     " m has more than 65536 voxels on a side: use a coarser resolution");
   }
   const auto voxels = [](double v) { return std::max(1, int(std::ceil(v - 1e-6))); };
-  GridGeometry geometry{spec.origin_m, spec.resolution_m,
-                        {voxels(n.x()), voxels(n.y()), voxels(n.z())}};
+  GridGeometry geometry{
+      spec.origin_m, spec.resolution_m, {voxels(n.x()), voxels(n.y()), voxels(n.z())}};
   const Index3 s = geometry.size;
   if (std::int64_t{s.x} * s.y > kMaxWorldVoxels / s.z) {
-    return fail(ErrorCode::map_too_large,
-                "a world of " + to_text(s) + " voxels is above the limit of 10^9: use a coarser "
-                "resolution or a smaller size");
+    return fail(ErrorCode::map_too_large, "a world of " + to_text(s) +
+                                              " voxels is above the limit of 10^9: use a coarser "
+                                              "resolution or a smaller size");
   }
   return geometry;
 }
@@ -60,9 +62,11 @@ Status check_keep_free(const WorldSpec& spec, const GridGeometry& geometry) {
     const Vec3 g = geometry.to_grid(p);
     if (!is_finite(p) || (g.array() < 0.0).any() || (g.array() > limit.array()).any()) {
       return fail(ErrorCode::invalid_input,
-                  "the point " + to_text(p) + " is to stay free but lies outside the world, which "
-                  "spans " + to_text(geometry.origin_map) + " to " +
-                      to_text(geometry.upper_corner_map()) + " m");
+                  "the point " + to_text(p) +
+                      " is to stay free but lies outside the world, which "
+                      "spans " +
+                      to_text(geometry.origin_map) + " to " + to_text(geometry.upper_corner_map()) +
+                      " m");
     }
   }
   return success();
@@ -95,8 +99,7 @@ Result<World> make_world(const WorldSpec& spec) {
   if (spec.kind == "boxes") return make_boxes(spec, *geometry);
   if (spec.kind == "forest") return make_forest(spec, *geometry);
   if (spec.kind == "office") return make_office(spec, *geometry);
-  return bad("no kind of world is called '" + spec.kind +
-             "': use boxes, forest, noise or office");
+  return bad("no kind of world is called '" + spec.kind + "': use boxes, forest, noise or office");
 }
 
 }  // namespace goshawk::worlds

@@ -38,8 +38,8 @@ std::int64_t count_blocked_by_definition(const World& world, double radius_m) {
             for (int i = -reach; i <= reach && !hit; ++i) {
               const Index3 other{x + i, y + j, z + k};
               const double d2 = gap(i) * gap(i) + gap(j) * gap(j) + gap(k) * gap(k);
-              hit = d2 < r * r - 1e-9 && world.occupied.contains(other) &&
-                    world.occupied.get(other);
+              hit =
+                  d2 < r * r - 1e-9 && world.occupied.contains(other) && world.occupied.get(other);
             }
           }
         }
@@ -58,8 +58,8 @@ BitGrid reachable(const BitGrid& blocked, Index3 from) {
   while (!open.empty()) {
     const Index3 at = open.back();
     open.pop_back();
-    for (const Index3 step : {Index3{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1},
-                              {0, 0, -1}}) {
+    for (const Index3 step :
+         {Index3{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}) {
       const Index3 next = at + step;
       if (!seen.contains(next) || blocked.get(next) || seen.get(next)) continue;
       seen.set(next, true);
@@ -89,11 +89,16 @@ TEST(World, SameSpecGivesTheSameWorldAndAnotherSeedAnother) {
 
 // The bytes of a world are an interface: benchmarks name a spec, not a file.
 TEST(World, BytesNeverChange) {
-  EXPECT_EQ(fingerprint(make_world(spec_of("noise", 0.1, 1)).value().occupied), 15951441774513777870ULL);
-  EXPECT_EQ(fingerprint(make_world(spec_of("boxes", 0.4, 1)).value().occupied), 17992939061100410695ULL);
-  EXPECT_EQ(fingerprint(make_world(spec_of("boxes", 0.1, 42)).value().occupied), 8472406293252374757ULL);
-  EXPECT_EQ(fingerprint(make_world(spec_of("forest", 0.3, 1)).value().occupied), 3482057018376969354ULL);
-  EXPECT_EQ(fingerprint(make_world(spec_of("office", 0.4, 1)).value().occupied), 2079729182464795195ULL);
+  EXPECT_EQ(fingerprint(make_world(spec_of("noise", 0.1, 1)).value().occupied),
+            15951441774513777870ULL);
+  EXPECT_EQ(fingerprint(make_world(spec_of("boxes", 0.4, 1)).value().occupied),
+            17992939061100410695ULL);
+  EXPECT_EQ(fingerprint(make_world(spec_of("boxes", 0.1, 42)).value().occupied),
+            8472406293252374757ULL);
+  EXPECT_EQ(fingerprint(make_world(spec_of("forest", 0.3, 1)).value().occupied),
+            3482057018376969354ULL);
+  EXPECT_EQ(fingerprint(make_world(spec_of("office", 0.4, 1)).value().occupied),
+            2079729182464795195ULL);
 }
 
 TEST(World, DefaultWorldIsThePaddedBoxOfTheThesis) {
@@ -108,8 +113,8 @@ TEST(World, BlockedShareOfTheGrownMapIsTheDensity) {
   for (const std::string kind : {"boxes", "forest"}) {
     for (const double density : {0.0, 0.1, 0.25, 0.4, 0.6}) {
       const World world = make_world(spec_of(kind, density, 3)).value();
-      const double share = double(count_blocked_by_definition(world, 0.2)) /
-                           double(world.occupied.voxels());
+      const double share =
+          double(count_blocked_by_definition(world, 0.2)) / double(world.occupied.voxels());
       EXPECT_NEAR(share, density, kDensityTolerance) << kind;
     }
   }
@@ -119,13 +124,13 @@ TEST(World, OfficeIsFurnishedToTheDensityOrHasNoFurniture) {
   WorldSpec spec = spec_of("office", 0.0, 4);
   spec.keep_free.clear();
   const World walls = make_world(spec).value();
-  const double walls_share = double(count_blocked_by_definition(walls, 0.2)) /
-                             double(walls.occupied.voxels());
+  const double walls_share =
+      double(count_blocked_by_definition(walls, 0.2)) / double(walls.occupied.voxels());
   spec.density = walls_share + 0.1;
   const World furnished = make_world(spec).value();
-  EXPECT_NEAR(double(count_blocked_by_definition(furnished, 0.2)) /
-                  double(furnished.occupied.voxels()),
-              spec.density, kDensityTolerance);
+  EXPECT_NEAR(
+      double(count_blocked_by_definition(furnished, 0.2)) / double(furnished.occupied.voxels()),
+      spec.density, kDensityTolerance);
   EXPECT_GT(furnished.occupied.count(), walls.occupied.count());
 }
 
@@ -220,11 +225,20 @@ TEST(World, BadSpecsAreRefusedWithASentence) {
   refuse([](S& s) { s.inflation_m = -0.1; }, ErrorCode::invalid_parameter);
   refuse([](S& s) { s.keep_free.push_back(Vec3(99, 0, 0)); }, ErrorCode::invalid_input);
   refuse([&](S& s) { s.keep_free.push_back(Vec3(nan, 0, 0)); }, ErrorCode::invalid_input);
-  refuse([](S& s) { s.kind = "office"; s.size_m.x() = 3.0; s.keep_free.clear(); },
-         ErrorCode::invalid_parameter);
+  refuse(
+      [](S& s) {
+        s.kind = "office";
+        s.size_m.x() = 3.0;
+        s.keep_free.clear();
+      },
+      ErrorCode::invalid_parameter);
   // One voxel cannot be 0.4 blocked.
-  refuse([](S& s) { s.size_m = Vec3(0.2, 0.2, 0.2); s.keep_free.clear(); },
-         ErrorCode::invalid_parameter);
+  refuse(
+      [](S& s) {
+        s.size_m = Vec3(0.2, 0.2, 0.2);
+        s.keep_free.clear();
+      },
+      ErrorCode::invalid_parameter);
 }
 
 TEST(World, AnInflationFarLargerThanTheWorldEndsInASentence) {

@@ -25,14 +25,14 @@ struct Limits {
 /// invalid polytope, an invalid limit or a duration that is not above zero is NaN, and then the
 /// certificate does not hold.
 struct Certificate {
-  double position_m = 0.0;            // control points outside their polytope, max of A c - b
-  double velocity_m_s = 0.0;          // velocity control points above v_max
-  double acceleration_m_s2 = 0.0;     // acceleration control points above a_max
-  double joint_position_m = 0.0;      // jumps between pieces
+  double position_m = 0.0;         // control points outside their polytope, max of A c - b
+  double velocity_m_s = 0.0;       // velocity control points above v_max
+  double acceleration_m_s2 = 0.0;  // acceleration control points above a_max
+  double joint_position_m = 0.0;   // jumps between pieces
   double joint_velocity_m_s = 0.0;
   double joint_acceleration_m_s2 = 0.0;
-  double start_m = 0.0;               // largest of position, velocity, acceleration error
-  double goal_m = 0.0;                // likewise at the end
+  double start_m = 0.0;  // largest of position, velocity, acceleration error
+  double goal_m = 0.0;   // likewise at the end
 
   /// Every family within its tolerance: 1e-6 in its own unit.
   bool holds(double tolerance = 1e-6) const;

@@ -10,15 +10,15 @@ namespace goshawk {
 /// StageReport messages, in `--json` output and in docs/troubleshooting.md.
 enum class ErrorCode {
   ok,
-  invalid_input,          // not finite, wrong size, or not to be understood
-  invalid_parameter,      // a parameter that is unknown, of the wrong type or out of range
-  invalid_limits,         // a velocity or acceleration limit that is zero, negative or not finite
-  wrong_frame,            // a message in a frame that this stage does not work in
-  map_unreadable,         // the file is missing, cannot be opened, or has an unknown ending
-  map_malformed,          // the file is truncated or is not what its ending says
-  map_empty,              // no voxel in it, or no free voxel
-  map_too_large,          // more voxels than can be addressed or held
-  no_map,                 // a request came before any map
+  invalid_input,      // not finite, wrong size, or not to be understood
+  invalid_parameter,  // a parameter that is unknown, of the wrong type or out of range
+  invalid_limits,     // a velocity or acceleration limit that is zero, negative or not finite
+  wrong_frame,        // a message in a frame that this stage does not work in
+  map_unreadable,     // the file is missing, cannot be opened, or has an unknown ending
+  map_malformed,      // the file is truncated or is not what its ending says
+  map_empty,          // no voxel in it, or no free voxel
+  map_too_large,      // more voxels than can be addressed or held
+  no_map,             // a request came before any map
   start_outside,
   start_occupied,
   start_unknown,
@@ -33,10 +33,10 @@ enum class ErrorCode {
   solver_failed,          // the solver stopped without an answer: numerical trouble
   not_certified,          // the certificate does not hold
   deadline_exceeded,
-  not_at_start,           // the vehicle is not where the trajectory begins
-  tracking_lost,          // odometry is missing, stale or too far from the trajectory
-  stage_silent,           // a stage did not answer in time
-  io_failed,              // a file or a socket could not be used
+  not_at_start,   // the vehicle is not where the trajectory begins
+  tracking_lost,  // odometry is missing, stale or too far from the trajectory
+  stage_silent,   // a stage did not answer in time
+  io_failed,      // a file or a socket could not be used
 };
 
 std::string_view to_string(ErrorCode code);

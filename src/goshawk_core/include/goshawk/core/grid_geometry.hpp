@@ -23,9 +23,7 @@ struct GridGeometry {
   /// upper voxel), or nothing where p_map is outside or not finite
   std::optional<Index3> index_of(const Vec3& p_map) const;
 
-  Vec3 lower_corner(Index3 i) const {
-    return origin_map + resolution_m * Vec3(i.x, i.y, i.z);
-  }
+  Vec3 lower_corner(Index3 i) const { return origin_map + resolution_m * Vec3(i.x, i.y, i.z); }
   Vec3 center(Index3 i) const {
     return origin_map + resolution_m * Vec3(i.x + 0.5, i.y + 0.5, i.z + 0.5);
   }

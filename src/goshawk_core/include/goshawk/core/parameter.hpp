@@ -23,9 +23,7 @@ struct Range {
   double hi = std::numeric_limits<double>::infinity();
   bool above_lo = false;  // lo itself is excluded
 
-  bool contains(double value) const {
-    return (above_lo ? value > lo : value >= lo) && value <= hi;
-  }
+  bool contains(double value) const { return (above_lo ? value > lo : value >= lo) && value <= hi; }
   static Range positive(double hi = std::numeric_limits<double>::max()) { return {0.0, hi, true}; }
 };
 

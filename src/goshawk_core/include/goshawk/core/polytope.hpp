@@ -44,9 +44,9 @@ Ball chebyshev_ball(const Polytope& a, const Polytope& b);
 /// What a corridor builder hands to a trajectory optimizer: polytope k holds the segment from
 /// waypoint k to waypoint k + 1.
 struct Corridor {
-  std::vector<Vec3> waypoints_map;     // [m] n + 1: start, joints, goal
-  std::vector<Polytope> polytopes;     // n
-  std::vector<Ball> overlaps;          // n - 1: largest ball shared by polytopes k and k + 1
+  std::vector<Vec3> waypoints_map;      // [m] n + 1: start, joints, goal
+  std::vector<Polytope> polytopes;      // n
+  std::vector<Ball> overlaps;           // n - 1: largest ball shared by polytopes k and k + 1
   double min_overlap_radius_m() const;  // [m] infinity for one polytope, NaN if one is
 
   /// n >= 1, sizes agree, polytopes valid, overlaps finite, waypoints inside the polytopes they

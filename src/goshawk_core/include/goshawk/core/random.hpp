@@ -22,9 +22,7 @@ class Random {
   double uniform(double lo, double hi) { return lo + (hi - lo) * uniform(); }
 
   /// @return uniform in {0, ..., n - 1}. @pre n >= 1
-  int below(int n) {
-    return int(((next() >> 32) * std::uint64_t(unsigned(n))) >> 32);
-  }
+  int below(int n) { return int(((next() >> 32) * std::uint64_t(unsigned(n))) >> 32); }
   bool chance(double probability) { return uniform() < probability; }
 
  private:

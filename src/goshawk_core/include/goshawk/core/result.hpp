@@ -40,8 +40,7 @@ class [[nodiscard]] Result {
  private:
   T& checked() {
     if (!ok()) {
-      throw std::logic_error("Result::value() of a failure: " +
-                             std::get<Error>(content_).message);
+      throw std::logic_error("Result::value() of a failure: " + std::get<Error>(content_).message);
     }
     return std::get<T>(content_);
   }
@@ -52,9 +51,13 @@ class [[nodiscard]] Result {
 /// For operations that have nothing to return but may fail.
 using Status = Result<std::monostate>;
 
-inline Status success() { return Status(std::monostate{}); }
+inline Status success() {
+  return Status(std::monostate{});
+}
 
 /// fail(ErrorCode::no_path, "...") reads better than braces at the call.
-inline Error fail(ErrorCode code, std::string message) { return Error{code, std::move(message)}; }
+inline Error fail(ErrorCode code, std::string message) {
+  return Error{code, std::move(message)};
+}
 
 }  // namespace goshawk

@@ -17,7 +17,9 @@ struct Index3 {
   friend Index3 operator-(Index3 a, Index3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 };
 
-inline bool is_finite(const Vec3& v) { return v.allFinite(); }
+inline bool is_finite(const Vec3& v) {
+  return v.allFinite();
+}
 
 /// "(1.000, 2.000, 3.000)", for sentences
 std::string to_text(const Vec3& p);

@@ -10,10 +10,10 @@ inline constexpr double kGravity_m_s2 = 9.80665;  // standard gravity
 
 /// The 12 states of the vehicle. Frames: `map` (ENU), `base_link` (FLU).
 struct RigidBodyState {
-  Vec3 position_map = Vec3::Zero();                                  // [m]
-  Vec3 velocity_map = Vec3::Zero();                                  // [m/s]
-  Eigen::Quaterniond q_map_base = Eigen::Quaterniond::Identity();    // base_link to map
-  Vec3 angular_velocity_base = Vec3::Zero();                         // [rad/s]
+  Vec3 position_map = Vec3::Zero();                                // [m]
+  Vec3 velocity_map = Vec3::Zero();                                // [m/s]
+  Eigen::Quaterniond q_map_base = Eigen::Quaterniond::Identity();  // base_link to map
+  Vec3 angular_velocity_base = Vec3::Zero();                       // [rad/s]
 
   bool is_finite() const {
     return position_map.allFinite() && velocity_map.allFinite() &&

@@ -15,8 +15,7 @@ namespace goshawk::introspection {
 /// The bytes may come from anyone: a length that they cannot hold, a bool that is neither 0 nor 1
 /// and a wrong encapsulation are errors, found before memory is claimed for them.
 /// @return invalid_input that names field and fault
-Result<nlohmann::ordered_json> cdr_to_json(const Type& type,
-                                           std::span<const unsigned char> bytes);
+Result<nlohmann::ordered_json> cdr_to_json(const Type& type, std::span<const unsigned char> bytes);
 
 /// The way back, little-endian. Fields that the JSON leaves out are zero, empty or false.
 /// @return invalid_input that names the field: unknown (and the nearest known one), of another

@@ -31,7 +31,7 @@ struct Config {
 };
 
 template <typename Self, typename Visitor>
-  requires std::same_as<std::remove_const_t<Self>, Config>
+requires std::same_as<std::remove_const_t<Self>, Config>
 void describe(Self& c, Visitor&& visit) {
   visit("map_file", c.map_file, "",
         "map to load (.bt, .ot, .pcd, .ply, .3dmap); empty: the box begins as unknown space",

@@ -28,7 +28,7 @@ class LiveMap {
   const octomap::OcTree& tree() const { return *tree_; }
 
   struct ScanResult {
-    GridUpdate update;             // brings grid() of before to grid() of now; may be empty
+    GridUpdate update;                 // brings grid() of before to grid() of now; may be empty
     std::int64_t points_left_out = 0;  // not finite, or at the sensor itself: missing returns
   };
 

@@ -23,11 +23,11 @@ enum class CloudMeaning {
 /// How to read files that do not say it themselves. OctoMap files bring their resolution and their
 /// knowledge of free space along and use only max_voxels.
 struct LoadOptions {
-  double resolution_m = 0.2;                    // voxel edge of clouds and .3dmap files
+  double resolution_m = 0.2;  // voxel edge of clouds and .3dmap files
   CloudMeaning cloud = CloudMeaning::map;
-  Vec3 sensor_origin_map = Vec3::Zero();        // [m] for CloudMeaning::scan
-  double max_range_m = 30.0;                    // [m] for CloudMeaning::scan
-  std::optional<Box> box;                       // clouds: points outside are skipped
+  Vec3 sensor_origin_map = Vec3::Zero();  // [m] for CloudMeaning::scan
+  double max_range_m = 30.0;              // [m] for CloudMeaning::scan
+  std::optional<Box> box;                 // clouds: points outside are skipped
   std::int64_t max_voxels = 1'000'000'000;
 };
 

@@ -18,7 +18,7 @@ struct RawVoxels {
 };
 
 struct VoxelizeOptions {
-  std::optional<Box> box;                   // [m]; without: the box around all that is known
+  std::optional<Box> box;  // [m]; without: the box around all that is known
   std::int64_t max_voxels = 1'000'000'000;
 };
 

@@ -29,7 +29,7 @@ struct Config {
 };
 
 template <typename Self, typename Visitor>
-  requires std::same_as<std::remove_const_t<Self>, Config>
+requires std::same_as<std::remove_const_t<Self>, Config>
 void describe(Self& c, Visitor&& visit) {
   visit("v_max_m_s", c.v_max_m_s, "m/s", "speed limit of every plan", Range::positive(100.0));
   visit("a_max_m_s2", c.a_max_m_s2, "m/s^2", "acceleration limit of every plan",

@@ -99,7 +99,7 @@ class Navigator {
   Goal goal_;
   bool goal_open_ = false;  // a goal that no committed trajectory leads to yet
   int attempts_ = 0;
-  std::int64_t retry_ns_ = 0;     // not before this
+  std::int64_t retry_ns_ = 0;       // not before this
   std::int64_t wait_begin_ns_ = 0;  // since when a plan waits for the vehicle to come to rest
   double lead_s_;
   std::optional<Open> open_;

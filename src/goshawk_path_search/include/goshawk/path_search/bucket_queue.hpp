@@ -91,8 +91,8 @@ class BucketQueue {
     return std::uint32_t(entries_.size() - 1);
   }
 
-  std::vector<std::uint32_t> heads_;   // newest entry of each bucket
-  std::vector<std::uint64_t> used_;    // one bit a bucket: not empty
+  std::vector<std::uint32_t> heads_;  // newest entry of each bucket
+  std::vector<std::uint64_t> used_;   // one bit a bucket: not empty
   std::vector<Entry> entries_;
   std::uint32_t recycled_ = kNone;
   Cost base_ = 0;

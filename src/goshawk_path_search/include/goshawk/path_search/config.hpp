@@ -16,7 +16,7 @@ struct Config {
 };
 
 template <typename Self, typename Visitor>
-  requires std::same_as<std::remove_const_t<Self>, Config>
+requires std::same_as<std::remove_const_t<Self>, Config>
 void describe(Self& c, Visitor&& visit) {
   visit("planner", c.planner, "",
         "grid search: jastar (fastest, exact), astar (octile heuristic), astar_euclidean, "

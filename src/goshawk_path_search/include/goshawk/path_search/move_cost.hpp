@@ -22,7 +22,9 @@ inline constexpr Cost kUnit = kMoveCost[1];
 /// The 26 moves and, in the middle, no move: index = 9 (dz + 1) + 3 (dy + 1) + (dx + 1).
 inline constexpr int kDirections = 27;
 inline constexpr int kNoDirection = 13;
-constexpr int opposite(int direction) { return 26 - direction; }
+constexpr int opposite(int direction) {
+  return 26 - direction;
+}
 constexpr int direction_of(Index3 step) {
   return 9 * (step.z + 1) + 3 * (step.y + 1) + step.x + 1;
 }

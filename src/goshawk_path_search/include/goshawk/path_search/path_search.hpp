@@ -19,7 +19,7 @@ struct PlannedPath {
   double pruned_length_m = 0.0;     // [m] of waypoints_map, never more than raw_length_m
   double cost = 0.0;                // [m] length over voxel centres, which the search minimises
   Counters counters;
-  std::string implementation;       // the planner's name
+  std::string implementation;  // the planner's name
 };
 
 /// The path search stage: a map and two points in, a pruned path out.

@@ -50,11 +50,11 @@ class PathPruner {
 
   const BitGrid* blocked_ = nullptr;
   std::span<const Vec3> nodes_;
-  double work_left_ = 0.0;          // [voxels] how much more line of sight may be tested
-  std::vector<int> other_;          // the greedy polyline from the other end
-  std::vector<int> candidates_;     // nodes that the shortest polyline may use
-  std::vector<double> reached_;     // length of the shortest polyline to each candidate
-  std::vector<int> before_;         // the candidate before it
+  double work_left_ = 0.0;       // [voxels] how much more line of sight may be tested
+  std::vector<int> other_;       // the greedy polyline from the other end
+  std::vector<int> candidates_;  // nodes that the shortest polyline may use
+  std::vector<double> reached_;  // length of the shortest polyline to each candidate
+  std::vector<int> before_;      // the candidate before it
   std::vector<Candidate> heap_;
 };
 

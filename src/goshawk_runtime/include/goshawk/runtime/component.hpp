@@ -31,10 +31,10 @@ std::vector<std::string> installed_components();
 }  // namespace goshawk::runtime
 
 /// Once in each component's source. Config is its parameter struct.
-#define GOSHAWK_REGISTER_COMPONENT(Class, Config)                                       \
-  extern "C" __attribute__((visibility("default")))                                     \
-  const goshawk::runtime::ComponentExport goshawk_component{                            \
+#define GOSHAWK_REGISTER_COMPONENT(Class, Config)                                        \
+  extern "C" __attribute__((visibility("default")))                                      \
+  const goshawk::runtime::ComponentExport goshawk_component{                             \
       [](goshawk::runtime::Node& node) -> std::unique_ptr<goshawk::runtime::Component> { \
-        return std::make_unique<Class>(node);                                           \
-      },                                                                                \
+        return std::make_unique<Class>(node);                                            \
+      },                                                                                 \
       &goshawk::runtime::describe_parameters<Config>};

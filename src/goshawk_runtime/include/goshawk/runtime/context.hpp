@@ -10,9 +10,9 @@
 namespace goshawk::runtime {
 
 struct ContextOptions {
-  int domain = 0;                         // 0 to 232
-  std::string interfaces = "loopback";    // "loopback", "all", or IPv4 addresses with commas
-  std::vector<std::string> node_names;    // full names, for `goshawk node list`
+  int domain = 0;                       // 0 to 232
+  std::string interfaces = "loopback";  // "loopback", "all", or IPv4 addresses with commas
+  std::vector<std::string> node_names;  // full names, for `goshawk node list`
 
   /// ROS_DOMAIN_ID and GOSHAWK_INTERFACES, where they are set.
   /// @return invalid_parameter for a domain that is no number from 0 to 232

@@ -17,10 +17,10 @@ namespace goshawk::runtime {
 class ParameterSource {
  public:
   struct Entry {
-    std::string text;    // as written
-    std::string origin;  // file or option that set it, for the sentence of a fault
-    bool quoted = false; // a quoted YAML scalar is a string, even when it looks like a number
-    std::string fault;   // why it cannot be a value at all; empty: it can
+    std::string text;     // as written
+    std::string origin;   // file or option that set it, for the sentence of a fault
+    bool quoted = false;  // a quoted YAML scalar is a string, even when it looks like a number
+    std::string fault;    // why it cannot be a value at all; empty: it can
   };
 
   /// Adds the sections of a ROS style file that are meant for this node: `/**`, the node's name
@@ -67,7 +67,9 @@ inline std::string range_fault(double value, const Anything&) {
   return std::isfinite(value) ? "" : "is not finite";
 }
 std::string range_fault(const std::string& value, const OneOf& one_of);
-inline std::string range_fault(const std::string&, const Anything&) { return ""; }
+inline std::string range_fault(const std::string&, const Anything&) {
+  return "";
+}
 
 std::string to_text(bool value);
 std::string to_text(int value);
@@ -75,7 +77,9 @@ std::string to_text(double value);
 std::string to_text(const std::string& value);
 std::string to_text(const Range& range);
 std::string to_text(const OneOf& one_of);
-inline std::string to_text(const Anything&) { return ""; }
+inline std::string to_text(const Anything&) {
+  return "";
+}
 
 /// Collects every fault of a node's parameters before anything is said.
 class Reader {
@@ -112,10 +116,14 @@ class Reader {
 
 template <typename T>
 constexpr const char* type_name() {
-  if constexpr (std::is_same_v<T, bool>) return "bool";
-  else if constexpr (std::is_same_v<T, int>) return "int";
-  else if constexpr (std::is_same_v<T, double>) return "double";
-  else return "string";
+  if constexpr (std::is_same_v<T, bool>)
+    return "bool";
+  else if constexpr (std::is_same_v<T, int>)
+    return "int";
+  else if constexpr (std::is_same_v<T, double>)
+    return "double";
+  else
+    return "string";
 }
 
 }  // namespace detail

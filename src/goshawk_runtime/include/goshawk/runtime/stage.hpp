@@ -25,9 +25,10 @@ inline std::int64_t wire_time_ns(const std_msgs::msg::Header& header, const Mess
 
 /// The request that a message carries, if it is valid and still worth an answer; else the failure
 /// has been reported already, and nothing is returned.
-inline std::optional<conversions::PlanRequest> open_request(
-    const goshawk_msgs::msg::PlanRequest& m, std::int64_t now_ns, StageReporter& reporter,
-    Timing timing) {
+inline std::optional<conversions::PlanRequest> open_request(const goshawk_msgs::msg::PlanRequest& m,
+                                                            std::int64_t now_ns,
+                                                            StageReporter& reporter,
+                                                            Timing timing) {
   auto request = conversions::from_msg(m);
   Status status = request ? conversions::check_deadline(*request, now_ns) : request.error();
   if (status) return *std::move(request);

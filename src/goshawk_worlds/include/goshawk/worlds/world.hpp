@@ -25,7 +25,7 @@ struct WorldSpec {
   double resolution_m = 0.2;     // [m] edge of a voxel
   double density = 0.4;          // [0, 0.95]
   std::uint64_t seed = 1;
-  double inflation_m = 0.2;      // [m] the growth that density and keep_free refer to
+  double inflation_m = 0.2;  // [m] the growth that density and keep_free refer to
   /// [m, frame map] These points lie in free voxels after the growth (every voxel whose closed
   /// cube holds the point is free). That a way joins them is likely, not promised.
   std::vector<Vec3> keep_free;
