@@ -69,7 +69,7 @@ Result<int> private_domain() {
 
 Result<LaunchProcess> LaunchProcess::start(const Arguments& launch_arguments, int domain,
                                            const std::string& output_file) {
-  Arguments command{install_prefix() + "/bin/goshawk", "launch"};
+  Arguments command{install_prefix() + "/bin/goshawk", "launch", "--stop-with-parent"};
   command.insert(command.end(), launch_arguments.begin(), launch_arguments.end());
   auto variables = environment(domain);
   auto argv = pointers_to(command);

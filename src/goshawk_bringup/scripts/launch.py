@@ -176,7 +176,8 @@ def supervisor_configuration(plan, logs, socket):
     return "\n".join(lines) + "\n"
 
 
-def die_with_parent():
+def stop_with_parent():
+    """SIGTERM for this process when its parent ends, however it ends."""
     pr_set_pdeathsig = 1
     ctypes.CDLL(None).prctl(pr_set_pdeathsig, signal.SIGTERM)
 
@@ -210,7 +211,7 @@ class Launch:
         supervisor = subprocess.Popen(
             ["/usr/bin/python3", "/usr/bin/supervisord", "-n", "-c", configuration],
             stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-            start_new_session=True, preexec_fn=die_with_parent)
+            start_new_session=True, preexec_fn=stop_with_parent)
         self.say("starting", text=f"starting {', '.join(self.plan.programs)}; logs in {self.logs}")
         status = DONE
         try:
@@ -300,6 +301,8 @@ def main():
     parser.add_argument("--log-dir", help="folder for the logs (default: a new one in /tmp)")
     parser.add_argument("--json", action="store_true", help="one JSON object a line")
     parser.add_argument("--prefix", required=True, help=argparse.SUPPRESS)
+    parser.add_argument("--stop-with-parent", action="store_true",
+                        help="stop as on Ctrl-C when the process that started this one ends")
     options = parser.parse_args(arguments)
     path = options.file
     if not os.path.exists(path) and "/" not in path:
@@ -322,6 +325,8 @@ def main():
 
     signal.signal(signal.SIGINT, stop)
     signal.signal(signal.SIGTERM, stop)
+    if options.stop_with_parent:
+        stop_with_parent()
     return launch.run()
 
 

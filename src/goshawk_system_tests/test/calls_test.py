@@ -229,7 +229,7 @@ class BadPoints(CallsCase):
             for text in ("1,2", "1,2,3,4", "a,b,c", "1,2,3m", " ", "1, 2, 3"):
                 self.expect(["plan", f"{option}={text}"], WRONG_CALL, "invalid_input")
                 self.expect(["fly", f"{option}={text}", "--output",
-                             self.sandbox.folder / "out"], WRONG_CALL, "invalid_input")
+                             self.sandbox.folder / "out"], WRONG_CALL, "invalid_parameter")
 
     def test_points_never_measured(self):
         map_file = harness.data_file(self, "octomap/geb079.bt")
@@ -248,7 +248,7 @@ class BadPoints(CallsCase):
         self.assertIsNone(answer["path"])
         self.assertEqual(set(answer), PLAN_KEYS)
         self.expect(["fly", "--map", plate, "--start", "2,2,1", "--output",
-                     self.sandbox.folder / "out"], WRONG_CALL, "invalid_input", "--goal")
+                     self.sandbox.folder / "out"], WRONG_CALL, "invalid_parameter", "--goal")
 
     def test_fly_refuses_a_start_in_a_wall_before_anything_starts(self):
         answer = self.expect(["fly", f"--start={self.occupied_point()}", "--output",

@@ -241,7 +241,8 @@ class Tools(StackTest):
     def test_pub(self):
         answer = self.stack.pub("some/topic", "geometry_msgs/msg/Point", {"x": 1.5}, expect=1)
         self.assertTrue(answer.err or answer.out)
-        reader = self.sandbox.start(GOSHAWK, "topic", "echo", "goal_pose", "--once", "--json")
+        reader = self.sandbox.start(GOSHAWK, "topic", "echo", "goal_pose", "--once", "--json",
+                                    "--timeout", "15")
         time.sleep(0.5)
         told = self.stack.pub("goal_pose", "geometry_msgs/msg/PoseStamped",
                               goal_message(PLACES[0]))
