@@ -36,7 +36,7 @@ int report_failure(const Error& error, bool json, int status) {
   const std::string code(to_string(error.code));
   if (json) {
     const Json object{{"ok", false}, {"code", code}, {"message", error.message}};
-    std::printf("%s\n", object.dump(2).c_str());
+    std::printf("%s\n", object.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
   } else {
     std::fprintf(stderr, "goshawk: %s: %s\n", code.c_str(), error.message.c_str());
   }

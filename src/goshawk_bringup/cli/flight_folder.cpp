@@ -38,7 +38,7 @@ std::vector<flight_check::Sample> flown_track(const FlightRecorder& record) {
 Status write_flight(const std::string& folder, const Json& summary, const FlightRecorder& record,
                     const LoadedMap& map, double body_radius_m) {
   std::ofstream json(folder + "/flight.json");
-  json << summary.dump(2) << '\n';
+  json << summary.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
   if (!json.flush()) {
     return fail(ErrorCode::io_failed, folder + "/flight.json cannot be written: is the disk full?");
   }

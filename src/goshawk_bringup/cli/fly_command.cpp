@@ -78,7 +78,7 @@ Result<std::string> make_map(const FlyOptions& o, const std::string& folder) {
   }
   auto spec = worlds::default_world();
   spec.seed = o.world_seed;
-  if (!o.world_density.empty()) spec.density = std::strtod(o.world_density.c_str(), nullptr);
+  if (o.world_density) spec.density = *o.world_density;
   const auto world = worlds::make_world(spec);
   if (!world) return world.error();
   const std::string file = folder + "/world.bt";

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "map_options.hpp"
 
 namespace goshawk::cli {
@@ -11,7 +13,7 @@ struct FlyOptions {
   int random = 0;
   std::uint64_t seed = 1;
   double min_distance_m = 2.0;
-  std::string world_density;
+  std::optional<double> world_density;
   std::uint64_t world_seed = 1;
   std::string launch = "flight";
   std::string folder;

@@ -62,9 +62,11 @@ def read_launch_file(path):
             content = yaml.safe_load(file)
     except OSError as error:
         raise WrongCall(f"{path} cannot be read: {error.strerror}") from error
-    except yaml.YAMLError as error:
+    except (yaml.YAMLError, UnicodeDecodeError) as error:
         raise WrongCall(f"{path} is not valid YAML: {error}") from error
     check_keys(content, FILE_KEYS, path)
+    if not isinstance(content.get("params_files", []), list):
+        raise WrongCall(f"{path}: params_files is not a list of files")
     stages = content.get("stages")
     if not isinstance(stages, list) or not stages:
         raise WrongCall(f"{path} lists no stages: write stages: [{{component: map_server}}, ...]")
@@ -73,7 +75,7 @@ def read_launch_file(path):
         check_keys(stage, STAGE_KEYS, where)
         if ("component" in stage) == ("command" in stage):
             raise WrongCall(f"{where} needs either a component or a command")
-        if "command" in stage and not isinstance(stage["command"], list):
+        if "command" in stage and not (isinstance(stage["command"], list) and stage["command"]):
             raise WrongCall(f"{where}: command is not a list, as in [./my_search, --fast]")
         for key in ("params", "remap"):
             if not isinstance(stage.get(key, {}), dict):
@@ -229,9 +231,11 @@ class Launch:
         return status
 
     def watch(self, supervisor):
-        server = xmlrpc.client.ServerProxy(
-            "http://127.0.0.1", transport=SupervisorTransport(None, None, f"unix://{self.socket}"))
         while not self.stopping:
+            # A new one each time: after a failed call (the socket is not there yet) a transport
+            # never recovers.
+            server = xmlrpc.client.ServerProxy("http://127.0.0.1", transport=SupervisorTransport(
+                None, None, f"unix://{self.socket}"))
             if supervisor.poll() is not None:
                 self.say("failed", text="supervisord ended: see supervisord.log")
                 return NOT_DONE
@@ -305,7 +309,7 @@ def main():
                         help="stop as on Ctrl-C when the process that started this one ends")
     options = parser.parse_args(arguments)
     path = options.file
-    if not os.path.exists(path) and "/" not in path:
+    if not os.path.isfile(path) and "/" not in path:
         path = os.path.join(options.prefix, "share/goshawk/launch",
                             path if path.endswith(".yaml") else path + ".yaml")
     try:

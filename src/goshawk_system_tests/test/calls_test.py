@@ -2,10 +2,7 @@
 """Wrong calls and bad files: each ends by itself, with the documented status, code and sentence."""
 
 import gzip
-import json
 import os
-import pathlib
-import struct
 
 import harness
 from harness import SystemTest

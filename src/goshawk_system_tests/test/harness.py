@@ -509,7 +509,8 @@ def main():
         sys.exit(f"{GOSHAWK} is not there: build first, or set GOSHAWK_PREFIX")
     loader, module = unittest.defaultTestLoader, sys.modules["__main__"]
     names = sys.argv[1:]
-    tests = loader.loadTestsFromNames(names, module) if names else loader.loadTestsFromModule(module)
+    tests = (loader.loadTestsFromNames(names, module) if names else
+             loader.loadTestsFromModule(module))
     result = unittest.TextTestRunner(resultclass=Report, verbosity=2).run(tests)
     report = os.environ.get("GOSHAWK_REPORT")
     if report:

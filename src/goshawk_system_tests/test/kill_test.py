@@ -48,6 +48,9 @@ class KillNine(StackTest):
         self.assertEqual({s: p for s, p in after.items() if s != stage},
                          {s: p for s, p in before.items() if s != stage})
 
+    def said(self, since):
+        return [f"{s['state']}/{s['code']}" for s in self.stack.states.lines()[since:]]
+
     def check_untouched(self):
         clearance = harness.smallest_clearance(self.stack.world, self.stack.track(), 0.02)
         note(f"smallest distance of the centre to an obstacle so far {clearance:.3f} m")
@@ -104,12 +107,12 @@ class KillNine(StackTest):
         self.check_untouched()
 
     def test_7_tracker(self):
-        """The vehicle's own failsafe brakes. The new tracker finds the vehicle elsewhere than the
-        trajectory is, refuses it, and the navigator plans anew: the goal is reached all the same."""
+        """The vehicle's own failsafe brakes. The new tracker finds the vehicle elsewhere than
+        the trajectory is and refuses it, so the navigator plans anew: the goal is reached."""
         goal, since = self.start_leg()
         self.kill("tracker")
         state = self.stack.wait_state({"arrived", "failed"}, since, 40.0)
-        note(f"tracker killed: navigator said {[(s['state'], s['code']) for s in self.stack.states.lines()[since:]]}")
+        note(f"tracker killed: navigator said {self.said(since)}")
         self.check_untouched()
         self.assertIsNotNone(state, "the leg neither ends nor fails")
         self.assertEqual(state["state"], "arrived", state)
@@ -126,7 +129,7 @@ class KillNine(StackTest):
         back = until(lambda: math.dist(self.stack.place(), PLACES[0]) < 0.3, 10.0)
         self.assertTrue(back, "no odometry from the new simulator")
         self.stack.wait_state({"arrived", "failed"}, since, 20.0)
-        note(f"simulator killed: navigator said {[(s['state'], s['code']) for s in self.stack.states.lines()[since:]]}")
+        note(f"simulator killed: navigator said {self.said(since)}")
         self.fly_on()
 
 
@@ -225,11 +228,14 @@ class LaunchFails(SystemTest):
 
     def test_wrong_launch_files(self):
         component = "stages: [{component: tracker}]\n"
-        for text, word in [("", "map of names"), ("[]", "map of names"), ("stages: []", "no stages"),
+        for text, word in [("", "map of names"), ("[]", "map of names"),
+                           ("stages: []", "no stages"),
                            ("stages: 5", "no stages"), ("stage: []", "did you mean stages"),
                            ("stages: [{}]", "component or a command"),
-                           ("stages: [{component: tracker, command: [a]}]", "component or a command"),
-                           ("stages: [{component: tracker, parms: {}}]", "did you mean params"),
+                           ("stages: [{component: tracker, command: [a]}]",
+                            "component or a command"),
+                           ("stages: [{component: tracker, parms: {}}]",
+                            "did you mean params"),
                            ("stages: [{component: tracker, params: 3}]", "params"),
                            ("stages: [{command: ls}]", "not a list"),
                            ("stages: [{command: []}]", "command"),

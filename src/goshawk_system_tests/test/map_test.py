@@ -3,7 +3,6 @@
 
 import json
 import math
-import os
 import pathlib
 import struct
 import time
@@ -35,9 +34,10 @@ def bits_of(words, row, x):
 
 
 class MapCase(SystemTest):
-    def pub(self, topic, kind, message, *options):
-        outcome = self.sandbox.goshawk("topic", "pub", topic, kind, json.dumps(message), "--once",
-                                       "--json", "--timeout", "10", *options, timeout_s=30)
+    def pub(self, topic, kind, message):
+        """Three times in half a second: to readers that are best effort, one can be lost."""
+        outcome = self.sandbox.goshawk("topic", "pub", topic, kind, json.dumps(message), "-n", "3",
+                                       "-r", "6", "--json", "--timeout", "10", timeout_s=30)
         self.assertEqual(outcome.status, 0, str(outcome))
 
     def echo(self, topic, *options):
@@ -74,17 +74,17 @@ class LiveMap(MapCase):
         time.sleep(0.3)
         self.pub("cloud_in", "sensor_msgs/msg/PointCloud2", cloud([(8.1, 5.1, 2.1)]))
         update = self.wait_line(updates)
-        self.assertEqual(update["from_version"], first["version"])
-        self.assertEqual(update["to_version"], first["version"] + 1)
+        self.assertGreaterEqual(update["from_version"], first["version"])
+        self.assertEqual(update["to_version"], update["from_version"] + 1)
         self.check_ray(update["bricks"], first["origin"])
 
         # In the body's frame, the same wall from elsewhere.
         self.pub("odom", "nav_msgs/msg/Odometry", odometry((5.1, 3.1, 2.1)))
         time.sleep(0.3)
         self.pub("cloud_in", "sensor_msgs/msg/PointCloud2", cloud([(3.0, 0.0, 0.0)], "base_link"))
-        second = self.wait_line(updates, lambda u: u["to_version"] == first["version"] + 2)
-        self.assertEqual(self.state(second["bricks"], first["origin"], (8.1, 3.1, 2.1)),
-                         "occupied")
+        second = self.wait_line(updates, lambda u: self.state(
+            u["bricks"], first["origin"], (8.1, 3.1, 2.1)) == "occupied")
+        self.assertGreater(second["to_version"], update["to_version"])
 
         # Whoever comes late gets the whole of it within a second or two.
         late = until(lambda: self.late_version() >= second["to_version"], 15.0, 0.5)
@@ -128,8 +128,8 @@ class LiveMap(MapCase):
                           (cloud(good, is_bigendian=True), "invalid_input")]:
             since = len(reports.lines())
             self.pub("cloud_in", "sensor_msgs/msg/PointCloud2", bad)
-            told = until(lambda: [r["code"] for r in reports.lines()[since:]], 5.0)
-            self.assertEqual(told, [code], f"{bad}")
+            told = until(lambda: {r["code"] for r in reports.lines()[since:]}, 5.0)
+            self.assertEqual(told, {code}, f"{bad}")
         self.pub("cloud_in", "sensor_msgs/msg/PointCloud2",
                  cloud([], width=0, height=4_000_000_000, row_step=0))
         self.pub("cloud_in", "sensor_msgs/msg/PointCloud2", cloud([(math.nan,) * 3]))
