@@ -239,6 +239,8 @@ std::shared_ptr<detail::Writer> Node::make_writer(std::string_view topic, const 
     writer_qos = dds::DATAWRITER_QOS_DEFAULT;
     apply(qos, writer_qos);
     writer_qos.publish_mode().kind = dds::SYNCHRONOUS_PUBLISH_MODE;
+    // Fast DDS' 3 s would let a late reader of a latched topic wait that long for what it missed.
+    writer_qos.reliable_writer_qos().times.heartbeatPeriod = {0, 100'000'000};
   }
   auto* writer =
       dds_topic == nullptr ? nullptr : publisher->create_datawriter(dds_topic, writer_qos);
