@@ -66,7 +66,8 @@ def read_launch_file(path):
         raise WrongCall(f"{path} is not valid YAML: {error}") from error
     check_keys(content, FILE_KEYS, path)
     if not isinstance(content.get("params_files", []), list):
-        raise WrongCall(f"{path}: params_files is not a list of files")
+        raise WrongCall(f"{path}: params_files is not a list of files but"
+                        f" {content['params_files']!r}: write params_files: [my.yaml]")
     stages = content.get("stages")
     if not isinstance(stages, list) or not stages:
         raise WrongCall(f"{path} lists no stages: write stages: [{{component: map_server}}, ...]")
