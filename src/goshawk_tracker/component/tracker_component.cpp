@@ -21,7 +21,7 @@ Tracker make_tracker(const Config& config) {
   return *std::move(tracker);
 }
 
-/// committed_trajectory, odom -> command, tracking_state
+/// committed_trajectory, odom, navigator_alive -> command, tracking_state
 class TrackerComponent : public Component {
  public:
   explicit TrackerComponent(Node& node)
@@ -37,6 +37,12 @@ class TrackerComponent : public Component {
     node.subscribe<nav_msgs::msg::Odometry>(
         "odom", Qos::best_effort(),
         [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) { on_odometry(m); });
+    node.subscribe<msg::NavigatorState>(
+        "navigator_alive", Qos::best_effort(),
+        [this](const msg::NavigatorState&, const MessageInfo& info) {
+          tracker_.heard_navigator(info.received_ns);
+        });
+    node.every(0.05, [this] { watch(); });
     reporter_.ready("tracks with " + config_.controller);
   }
 
@@ -86,12 +92,27 @@ class TrackerComponent : public Component {
     publish_state(stamp_ns);
   }
 
-  void publish_state(std::int64_t stamp_ns) {
-    const TrackingStatus status = tracker_.status();
+  // What must be said when odometry or the navigator are silent.
+  void watch() {
+    tracker_.watch(node_.now_ns());
+    report_fault(tracker_.status());
+  }
+
+  // Once each; what the moment alone is to blame for, once a second.
+  void report_fault(const TrackingStatus& status) {
     if (status.fault.code != ErrorCode::ok && status.fault.message != reported_) {
-      reporter_.failed(status.trajectory_id, status.fault);
+      if (status.lost_trajectory_id != 0 || status.fault.code != ErrorCode::tracking_lost) {
+        reporter_.failed(status.lost_trajectory_id, status.fault);
+      } else {
+        complain(status.fault);
+      }
     }
     reported_ = status.fault.message;
+  }
+
+  void publish_state(std::int64_t stamp_ns) {
+    const TrackingStatus status = tracker_.status();
+    report_fault(status);
     msg::TrackingState m;
     m.header(conversions::make_header(stamp_ns));
     m.mode(std::string(to_string(status.mode)));
