@@ -24,6 +24,8 @@ constexpr Verb kVerbs[] = {
      &cli::fly_command},
     {"plan", "one plan in this process, no DDS: path, corridor, certified trajectory",
      &cli::plan_command},
+    {"check", "the second opinion on a flight folder: what the body came near to, when and where",
+     &cli::check_command},
     {"world", "make a world, or convert a map", &cli::world_command},
     {"launch", "start what a launch file lists, supervised, until Ctrl-C", &cli::launch_command},
     {"run", "start one component: goshawk run COMPONENT --ros-args ...", &cli::run_command},

@@ -54,10 +54,8 @@ class FlightCheckComponent : public Component {
       return reporter_.fault(
           fail(ErrorCode::map_malformed, "octomap_binary carries no binary OcTree: not judged"));
     }
-    const std::string_view payload(reinterpret_cast<const char*>(m.data().data()),
-                                   m.data().size());
-    auto check =
-        FlightCheck::from_payload(payload, m.resolution(), config_.body, config_.options);
+    const std::string_view payload(reinterpret_cast<const char*>(m.data().data()), m.data().size());
+    auto check = FlightCheck::from_payload(payload, m.resolution(), config_.body, config_.options);
     if (!check) return reporter_.fault(check.error());
     check_ = std::move(*check);
   }
@@ -67,13 +65,17 @@ class FlightCheckComponent : public Component {
     const std::uint64_t id = m.trajectory().request().id();
     const auto received = conversions::from_msg(m.trajectory());
     if (!received) return reporter_.failed(id, received.error());
-    if (!check_) return reporter_.failed(id, fail(ErrorCode::no_map, "no map came yet: not judged"));
-    leg_ = Leg{id, seconds(conversions::to_ns(m.start_time())) + received->trajectory.duration_s(),
-               {}, false};
+    if (!check_)
+      return reporter_.failed(id, fail(ErrorCode::no_map, "no map came yet: not judged"));
+    leg_ = Leg{id,
+               seconds(conversions::to_ns(m.start_time())) + received->trajectory.duration_s(),
+               {},
+               false};
     std::vector<PlannedPiece> pieces;
     for (const auto& piece : received->trajectory.pieces) {
       PlannedPiece p;
-      for (int j = 0; j < 6; ++j) p.control_points_map[std::size_t(j)] = piece.control_points.col(j);
+      for (int j = 0; j < 6; ++j)
+        p.control_points_map[std::size_t(j)] = piece.control_points.col(j);
       p.duration_s = piece.duration_s;
       pieces.push_back(p);
     }

@@ -83,8 +83,8 @@ Result<std::vector<Sample>> read_flown_csv(const std::filesystem::path& file) {
 
 Result<std::vector<std::vector<Sample>>> read_planned_csv(const std::filesystem::path& file,
                                                           double yaw_rad) {
-  const auto rows = read_table(
-      file, {"leg", "t_s", "x_m", "y_m", "z_m", "ax_m_s2", "ay_m_s2", "az_m_s2"});
+  const auto rows =
+      read_table(file, {"leg", "t_s", "x_m", "y_m", "z_m", "ax_m_s2", "ay_m_s2", "az_m_s2"});
   if (!rows) return rows.error();
   std::vector<std::vector<Sample>> legs;
   const double* leg = nullptr;

@@ -27,8 +27,8 @@ class TrackFile : public testing::Test {
 };
 
 TEST_F(TrackFile, ReadsAFlownTableWhateverTheOrderOfItsColumns) {
-  const auto track = read_flown_csv(
-      write("qz,t_s,x_m,y_m,z_m,vx_m_s,qw,qx,qy\n0,0.5,1,2,3,9,1,0,0\n1,0.75,1.5,2,-3e-1,9,0,0,0\n"));
+  const auto track = read_flown_csv(write(
+      "qz,t_s,x_m,y_m,z_m,vx_m_s,qw,qx,qy\n0,0.5,1,2,3,9,1,0,0\n1,0.75,1.5,2,-3e-1,9,0,0,0\n"));
   ASSERT_TRUE(track) << track.error().message;
   ASSERT_EQ(track->size(), 2U);
   EXPECT_EQ((*track)[1].t_s, 0.75);

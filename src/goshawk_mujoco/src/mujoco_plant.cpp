@@ -41,17 +41,18 @@ std::string model_text(const VehicleParameters& p) {
   constexpr int kX[] = {1, -1, -1, 1}, kY[] = {1, 1, -1, -1}, kTwist[] = {1, -1, 1, -1};
   std::string sites, motors;
   for (int i = 0; i < 4; ++i) {
-    sites += format("<site name='rotor%d' pos='%.17g %.17g 0'/>", i, kX[i] * lever_m,
-                    kY[i] * lever_m);
+    sites +=
+        format("<site name='rotor%d' pos='%.17g %.17g 0'/>", i, kX[i] * lever_m, kY[i] * lever_m);
     motors += format("<motor site='rotor%d' gear='0 0 1 0 0 %.17g'/>", i, kTwist[i] * twist_m);
   }
   return "<mujoco><compiler inertiafromgeom='false'/>" +
          format("<option gravity='0 0 %.17g' integrator='Euler'/>", -kGravity_m_s2) +
          "<worldbody><body name='vehicle'><freejoint/>" +
-         format("<inertial pos='0 0 0' mass='%.17g' fullinertia='%.17g %.17g %.17g %.17g %.17g "
-                "%.17g'/>",
-                p.mass_kg, p.inertia_xx_kg_m2, p.inertia_yy_kg_m2, p.inertia_zz_kg_m2,
-                p.inertia_xy_kg_m2, p.inertia_xz_kg_m2, p.inertia_yz_kg_m2) +
+         format(
+             "<inertial pos='0 0 0' mass='%.17g' fullinertia='%.17g %.17g %.17g %.17g %.17g "
+             "%.17g'/>",
+             p.mass_kg, p.inertia_xx_kg_m2, p.inertia_yy_kg_m2, p.inertia_zz_kg_m2,
+             p.inertia_xy_kg_m2, p.inertia_xz_kg_m2, p.inertia_yz_kg_m2) +
          sites + "</body></worldbody><actuator>" + motors + "</actuator></mujoco>";
 }
 
@@ -81,8 +82,8 @@ class MujocoPlant : public simulator::PlantModel {
     state_ = state;
     const auto& s = state.body;
     const auto& q = s.q_map_base;
-    const mjtNum position[7] = {s.position_map.x(), s.position_map.y(), s.position_map.z(), q.w(),
-                                q.x(),              q.y(),              q.z()};
+    const mjtNum position[7] = {
+        s.position_map.x(), s.position_map.y(), s.position_map.z(), q.w(), q.x(), q.y(), q.z()};
     std::memcpy(data_->qpos, position, sizeof position);
     Eigen::Map<Vec3>(data_->qvel) = s.velocity_map;
     Eigen::Map<Vec3>(data_->qvel + 3) = s.angular_velocity_base;

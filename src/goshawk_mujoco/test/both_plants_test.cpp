@@ -25,8 +25,8 @@ tracker::CommittedTrajectory round_trip(std::uint64_t seed) {
   c.id = seed;
   for (std::size_t k = 1; k < places.size(); ++k) {
     const double duration_s = 1.6 * std::sqrt((places[k] - places[k - 1]).norm() * 5.77 / 2.0);
-    c.trajectory.pieces.push_back(BezierPiece::between({.position = places[k - 1]},
-                                                       {.position = places[k]}, duration_s));
+    c.trajectory.pieces.push_back(
+        BezierPiece::between({.position = places[k - 1]}, {.position = places[k]}, duration_s));
   }
   c.polytopes = {Polytope::box(Vec3::Constant(-50.0), Vec3::Constant(50.0))};
   c.limits = {.v_max_m_s = 10.0, .a_max_m_s2 = 10.0};

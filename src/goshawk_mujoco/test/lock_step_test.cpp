@@ -100,8 +100,8 @@ class Pilot {
     answer.request(m);
     answer.pieces(conversions::to_msg(line));
     answer.polytopes(conversions::to_msg(box));
-    answer.certificate(conversions::to_msg(
-        certify(line, box, request->limits, request->start, request->goal)));
+    answer.certificate(
+        conversions::to_msg(certify(line, box, request->limits, request->start, request->goal)));
     EXPECT_TRUE(plans_.publish(answer));
   }
 

@@ -49,11 +49,11 @@ void Node::Impl::set_time(std::int64_t now_ns) {
 void Node::use_simulated_time() {
   if (impl_->time.on) return;
   impl_->time.on = true;
-  subscribe<rosgraph_msgs::msg::Clock>(
-      "/clock", Qos::reliable_last(), [this](const auto& m, const MessageInfo&) {
-        impl_->set_time(conversions::to_ns(m.clock()));
-        impl_->run_due_timers(*this);
-      });
+  subscribe<rosgraph_msgs::msg::Clock>("/clock", Qos::reliable_last(),
+                                       [this](const auto& m, const MessageInfo&) {
+                                         impl_->set_time(conversions::to_ns(m.clock()));
+                                         impl_->run_due_timers(*this);
+                                       });
 }
 
 void Node::run_in_lock_step() {
@@ -61,10 +61,9 @@ void Node::run_in_lock_step() {
   if (time.takes_turns) return;
   time.on = time.takes_turns = true;
   time.turns_done = advertise<Turn>(kDone, Qos::reliable_last(100));
-  time.turns = impl_->open(*this, turn_topic(full_name()), message_type<Turn>(),
-                           Qos::reliable_last(), [this](const void* message, const MessageInfo&) {
-                             take_turn(message);
-                           });
+  time.turns =
+      impl_->open(*this, turn_topic(full_name()), message_type<Turn>(), Qos::reliable_last(),
+                  [this](const void* message, const MessageInfo&) { take_turn(message); });
   impl_->turn_wait_set.attach_condition(time.turns->reader->get_statuscondition());
 }
 

@@ -280,8 +280,8 @@ void Tracker::land(std::int64_t now_ns) {
   FlatState to = from;
   to.position.z() = config_.land_height_m;
   const double height_m = from.position.z() - to.position.z();
-  deserted_ = fail(ErrorCode::stage_silent, "the navigator is lost: landing below " +
-                                                to_text(from.position) + " m");
+  deserted_ = fail(ErrorCode::stage_silent,
+                   "the navigator is lost: landing below " + to_text(from.position) + " m");
   if (height_m < 1e-3) return;
   CommittedTrajectory down;
   down.id = followed_id();

@@ -14,8 +14,8 @@ struct Link {
   std::int64_t period_ns = 4'000'000;    // of odometry
   std::function<std::int64_t()> gap_ns;  // in place of the period, where set
   std::int64_t odometry_delay_ns = 0;
-  std::int64_t command_delay_ns = 4'000'000;  // one step
-  std::function<bool()> drop;                 // loses the command, where set
+  std::int64_t command_delay_ns = 4'000'000;   // one step
+  std::function<bool()> drop;                  // loses the command, where set
   std::function<void(RigidBodyState&)> spoil;  // changes what odometry says, where set
 };
 

@@ -86,8 +86,7 @@ void describe(Self& c, Visitor&& visit) {
   visit("failsafe_tilt_rad", c.failsafe_tilt_rad, "rad", "steepest tilt of that braking",
         Range{0.05, 1.2});
   visit("failsafe_hold_s", c.failsafe_hold_s, "s",
-        "how long it holds, still without commands, before it lands by itself",
-        Range{0.0, 3600.0});
+        "how long it holds, still without commands, before it lands by itself", Range{0.0, 3600.0});
   visit("land_speed_m_s", c.land_speed_m_s, "m/s", "its descent", Range{0.05, 2.0});
   visit("land_height_m", c.land_height_m, "m",
         "height in the map at which a landing ends: the ground, plus the legs", Anything{});

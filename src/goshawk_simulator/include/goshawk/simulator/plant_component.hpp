@@ -119,9 +119,8 @@ class PlantComponent : public runtime::Component {
   void report_control() {
     const Control control = quadrotor_.control();
     if (control != said_ && control == Control::landing) {
-      reporter_.fault(fail(ErrorCode::tracking_lost,
-                           "still no commands: landing at " +
-                               to_text(quadrotor_.state().position_map)));
+      reporter_.fault(fail(ErrorCode::tracking_lost, "still no commands: landing at " +
+                                                         to_text(quadrotor_.state().position_map)));
     } else if (control != said_ && control == Control::failsafe) {
       reporter_.fault(fail(ErrorCode::tracking_lost,
                            "commands stopped coming: braking and holding; landing after " +

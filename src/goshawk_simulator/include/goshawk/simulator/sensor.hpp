@@ -11,11 +11,11 @@ namespace goshawk::simulator {
 /// What the vehicle's estimator says of the state: late, and with white noise on every part. All
 /// zero: the truth at once. The same seed, the same noise.
 struct SensorParameters {
-  double position_noise_m = 0.0;      // standard deviation on each axis, >= 0; so are all
-  double velocity_noise_m_s = 0.0;    // map
-  double attitude_noise_rad = 0.0;    // about each body axis
+  double position_noise_m = 0.0;    // standard deviation on each axis, >= 0; so are all
+  double velocity_noise_m_s = 0.0;  // map
+  double attitude_noise_rad = 0.0;  // about each body axis
   double body_rate_noise_rad_s = 0.0;
-  double delay_s = 0.0;               // of the newest estimate; its stamp tells its true age
+  double delay_s = 0.0;  // of the newest estimate; its stamp tells its true age
   int seed = 1;
 
   bool is_perfect() const {

@@ -20,10 +20,10 @@ std::string_view to_string(Mode mode);
 
 struct TrackingStatus {
   Mode mode = Mode::idle;
-  Error fault{ErrorCode::ok, ""};   // ok, or why the trajectory is not followed as planned
-  std::uint64_t trajectory_id = 0;  // the one followed or come to rest on; 0: none yet
+  Error fault{ErrorCode::ok, ""};        // ok, or why the trajectory is not followed as planned
+  std::uint64_t trajectory_id = 0;       // the one followed or come to rest on; 0: none yet
   std::uint64_t lost_trajectory_id = 0;  // the one that will not be flown to its end
-  double progress_s = 0.0;          // along it
+  double progress_s = 0.0;               // along it
   double duration_s = 0.0;
   int queued = 0;            // trajectories accepted whose time has not come
   FlatState reference;       // where the vehicle should be
@@ -113,11 +113,11 @@ class Tracker {
   double first_yaw_rad_ = 0.0;
   double yaw_rad_ = 0.0;
 
-  Error lost_{ErrorCode::ok, ""};      // why, until another trajectory is switched to
+  Error lost_{ErrorCode::ok, ""};  // why, until another trajectory is switched to
   std::uint64_t lost_id_ = 0;
-  Error refused_{ErrorCode::ok, ""};   // the newest odometry, or too far from where it holds
-  Error deserted_{ErrorCode::ok, ""};  // by the navigator, until it is heard again
-  std::optional<std::int64_t> heard_ns_;       // the navigator's last sign of life
+  Error refused_{ErrorCode::ok, ""};      // the newest odometry, or too far from where it holds
+  Error deserted_{ErrorCode::ok, ""};     // by the navigator, until it is heard again
+  std::optional<std::int64_t> heard_ns_;  // the navigator's last sign of life
   std::optional<std::int64_t> rest_since_ns_;  // the reference's, for good
   bool landing_ = false;
   double error_m_ = 0.0;
