@@ -96,9 +96,7 @@ int run(Options& o) {
   if (!saved) return report_failure(saved.error(), o.json, kNotDone);
   const double ratio = double(grown->count()) / double(grown->voxels());
   if (o.json) {
-    std::printf(
-        "%s\n",
-        describe(*made, o, ratio).dump(2, ' ', false, Json::error_handler_t::replace).c_str());
+    std::printf("%s\n", describe(*made, o, ratio).dump(2, ' ', false, Json::error_handler_t::replace).c_str());
   } else {
     std::printf("%s: %s voxels of %g m, %lld occupied, %.1f %% blocked when grown by %g m\n",
                 o.output.c_str(), to_text(made->geometry.size).c_str(), made->geometry.resolution_m,
