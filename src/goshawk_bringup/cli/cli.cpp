@@ -1,16 +1,23 @@
 #include "cli.hpp"
 
+#include <unistd.h>
+
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 
 namespace goshawk::cli {
 
 std::optional<int> parse(CLI::App& app, Arguments arguments) {
+  const bool json = std::ranges::find(arguments, "--json") != arguments.end();
   std::reverse(arguments.begin(), arguments.end());  // CLI11 takes them from the back
   try {
     app.parse(arguments);
   } catch (const CLI::ParseError& error) {
+    if (json && error.get_exit_code() != 0) {
+      return report_failure(fail(ErrorCode::invalid_parameter, error.what()), true, kWrongCall);
+    }
     return app.exit(error) == 0 ? kDone : kWrongCall;
   }
   return {};
@@ -45,6 +52,16 @@ int report_failure(const Error& error, bool json, int status) {
 
 Json to_json(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+int become(const Arguments& command) {
+  std::vector<char*> pointers;
+  for (const auto& word : command) pointers.push_back(const_cast<char*>(word.c_str()));
+  pointers.push_back(nullptr);
+  execv(pointers[0], pointers.data());
+  return report_failure(
+      fail(ErrorCode::io_failed, command[0] + " cannot be started: " + std::strerror(errno)), false,
+      kNotDone);
 }
 
 Json to_json(const Vec3& v) {

@@ -27,6 +27,9 @@ Result<Vec3> parse_point(const std::string& text);
 /// Prints the failure: a sentence on stderr, or one object {ok, code, message} on stdout.
 int report_failure(const Error& error, bool json, int status);
 
+/// Becomes another program, command[0] being its path. @return only where that fails
+int become(const Arguments& command);
+
 Json to_json(const Vec3& v);
 Json to_json(const std::vector<Vec3>& points);
 /// Infinities and NaN have no JSON: they become null.

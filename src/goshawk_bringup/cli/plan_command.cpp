@@ -84,7 +84,10 @@ int run(const Options& options, const std::string& map_file) {
   from.position = *start;
   to.position = *goal;
   const Plan plan = planner->plan(from, to, *limits);
-  json ? void(std::printf("%s\n", plan_to_json(plan).dump(2, ' ', false, Json::error_handler_t::replace).c_str())) : print(plan);
+  json
+      ? void(std::printf(
+            "%s\n", plan_to_json(plan).dump(2, ' ', false, Json::error_handler_t::replace).c_str()))
+      : print(plan);
   if (!plan.outcome) {
     return json ? kNotDone : report_failure(plan.outcome.error(), false, kNotDone);
   }
