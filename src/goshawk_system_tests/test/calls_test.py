@@ -81,7 +81,7 @@ class BadPoints(CallsCase):
     def test_texts_that_are_no_points(self):
         for option in ("--start", "--goal"):
             for text in ("1,2", "1,2,3,4", "a,b,c", "1,2,3m", " ", "1, 2, 3"):
-                self.expect(["plan", f"{option}={text}"], WRONG_CALL, "invalid_input")
+                self.expect(["plan", f"{option}={text}"], WRONG_CALL, "invalid_parameter")
                 self.expect(["fly", f"{option}={text}", "--output",
                              self.sandbox.folder / "out"], WRONG_CALL, "invalid_parameter")
 
@@ -172,7 +172,7 @@ class BadNumbers(CallsCase):
                                  (["--kind", "forrest"], ["forrest", "forest"]),
                                  (["--inflation=-1"], ["inflation"])]:
             self.expect(["world", out, *arguments], WRONG_CALL, "invalid_parameter", *words)
-        self.expect(["world", out, "--size", "5,5"], WRONG_CALL, "invalid_input", "5,5")
+        self.expect(["world", out, "--size", "5,5"], WRONG_CALL, "invalid_parameter", "5,5")
         self.expect(["world", out, "--keep-free", "100,0,0"], NOT_DONE, "invalid_input", "100")
         self.expect(["world", out, "--size", "5000,5000,5000"], NOT_DONE, "map_too_large")
         self.expect(["world", out, "--size", "1e300,1,1"], NOT_DONE, "map_too_large")
