@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "goshawk/introspection/doctor_command.hpp"
 #include "goshawk/introspection/node_command.hpp"
 #include "goshawk/introspection/param_command.hpp"
 #include "goshawk/introspection/topic_command.hpp"
@@ -29,12 +30,14 @@ constexpr Verb kVerbs[] = {
     {"world", "make a world, or convert a map", &cli::world_command},
     {"launch", "start what a launch file lists, supervised, until Ctrl-C", &cli::launch_command},
     {"run", "start one component: goshawk run COMPONENT --ros-args ...", &cli::run_command},
-    {"bench", "plan: latency of whole plans over DDS, by stage", &cli::bench_command},
+    {"bench", "measure plans over DDS, or a stage beside its rivals", &cli::bench_command},
     {"topic", "list, info, echo, hz, delay, bw, pub",
      [](const cli::Arguments& a) { return introspection::topic_command(a); }},
     {"node", "list", [](const cli::Arguments& a) { return introspection::node_command(a); }},
     {"param", "describe COMPONENT: every parameter with unit, default and range",
      [](const cli::Arguments& a) { return introspection::param_command(a); }},
+    {"doctor", "look at machine, settings and domain: what does not fit, and how to mend it",
+     [](const cli::Arguments& a) { return introspection::doctor_command(a); }},
 };
 
 void print_help() {

@@ -12,5 +12,6 @@ int check_command(const Arguments& arguments);
 int run_command(const Arguments& arguments);
 int launch_command(const Arguments& arguments);
 int bench_command(const Arguments& arguments);
+int bench_plan_command(const Arguments& arguments);
 
 }  // namespace goshawk::cli
