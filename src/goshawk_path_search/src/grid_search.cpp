@@ -38,7 +38,8 @@ class GridSearch final : public GridPlanner {
 
   using GridPlanner::search;
   std::string_view name() const override { return name_; }
-  void set_map(const BitGrid& blocked) override;
+  using GridPlanner::set_map;
+  void set_map(const BitGrid& blocked, const BitGrid* costly) override;
   Status search(const GridQuery& query, VoxelPath& path) override;
 
  private:
@@ -70,6 +71,7 @@ class GridSearch final : public GridPlanner {
   struct Goal {
     Index3 cell;
     Node node;
+    std::size_t index;  // in the query
   };
   Index3 start_;
   std::vector<Goal> goals_;  // without repetition
@@ -88,7 +90,7 @@ Error too_large(Index3 size) {
 }
 
 template <typename Heuristic, bool kJumps>
-void GridSearch<Heuristic, kJumps>::set_map(const BitGrid& blocked) {
+void GridSearch<Heuristic, kJumps>::set_map(const BitGrid& blocked, const BitGrid*) {
   const bool same_size = has_map_ && bits_.size() == blocked.size();
   if (!same_size) {
     has_map_ = false;
@@ -122,6 +124,7 @@ Status GridSearch<Heuristic, kJumps>::search(const GridQuery& query, VoxelPath& 
   path.counters = counters_;
   if (!ended) return ended;
   if (reached_) {
+    path.goal = goal_.index;
     trace(path);
     return success();
   }
@@ -137,9 +140,9 @@ template <typename Heuristic, bool kJumps>
 void GridSearch<Heuristic, kJumps>::prepare(const GridQuery& query) {
   start_ = query.start.cell;
   goals_.clear();
-  for (const End& goal : query.goals) {
-    const Node node = bits_.node(goal.cell);
-    if (!is_goal(node)) goals_.push_back({goal.cell, node});
+  for (std::size_t k = 0; k < query.goals.size(); ++k) {
+    const Index3 cell = query.goals[k].cell;
+    if (!is_goal(bits_.node(cell))) goals_.push_back({cell, bits_.node(cell), k});
   }
   goal_ = goals_.front();
   // Keys never fall below the first one if the heuristic is consistent; the Euclidean one is so

@@ -56,7 +56,10 @@ class GridPlanner {
   /// Takes over the obstacles; `blocked` is not kept. The same size as before costs one pass over
   /// the words and work for each voxel that differs; a new size allocates. A map that cannot be
   /// searched (empty, or more than 2^32 voxels) is reported by search().
-  virtual void set_map(const BitGrid& blocked) = 0;
+  void set_map(const BitGrid& blocked) { set_map(blocked, nullptr); }
+  /// @param costly of the same size: voxels that Weights::unknown is for; null for none. Planners
+  /// without weights ignore it
+  virtual void set_map(const BitGrid& blocked, const BitGrid* costly) = 0;
 
   /// @param path overwritten; its capacity is reused, so that a repeated query allocates nothing.
   /// After a failure its counters stand
@@ -77,8 +80,10 @@ Status check_ends(const GridQuery& query, Index3 size,
 /// no_path, in a sentence.
 Error no_way(const GridQuery& query);
 
-/// @return the planner that the configuration names, or invalid_parameter
-Result<std::unique_ptr<GridPlanner>> make_planner(const Config& config);
+/// @param resolution_m [m] of the maps that come; lengths in the configuration are scaled by it
+/// @return the planner that the configuration names; with weights, one that is exact about them.
+/// invalid_parameter where the configuration is wrong, or asks for what that planner cannot do
+Result<std::unique_ptr<GridPlanner>> make_planner(const Config& config, double resolution_m = 0.2);
 
 /// @return invalid_parameter for a word that is not a corner rule
 Result<CornerRule> parse_corner_rule(std::string_view word);
