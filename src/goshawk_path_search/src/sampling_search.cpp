@@ -102,9 +102,9 @@ struct SteadyPrm final : og::PRM {
     }
     si_->freeState(work);
     ob::PathPtr path;
-    if (!maybeConstructSolution(startM_, goalM_, path) || !path) {
-      return ob::PlannerStatus::TIMEOUT;
-    }
+    // Its answer is whether the length is good enough, not whether there is a path.
+    (void)maybeConstructSolution(startM_, goalM_, path);
+    if (!path) return ob::PlannerStatus::TIMEOUT;
     pdef_->addSolutionPath(path);
     return ob::PlannerStatus::EXACT_SOLUTION;
   }
