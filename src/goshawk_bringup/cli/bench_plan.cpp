@@ -217,9 +217,7 @@ int run(const Options& o) {
   const auto samples = measure(o, *world, folder.path(), *start, *goal, *limits);
   if (!samples) return report_failure(samples.error(), o.json, kNotDone);
   const Json result = to_json(*samples, o);
-  o.json ? void(std::printf("%s\n",
-                            result.dump(2, ' ', false, Json::error_handler_t::replace).c_str()))
-         : print(result);
+  o.json ? print_json(result) : print(result);
   return kDone;
 }
 

@@ -14,8 +14,10 @@ namespace {
 
 using Steady = std::chrono::steady_clock;
 
-constexpr double kSlice_s = 0.02;   // how often a wait looks for Ctrl-C
-constexpr double kSettled_s = 0.3;  // endpoints follow their participant within milliseconds
+constexpr double kSlice_s = 0.02;  // how often a wait looks for Ctrl-C
+// Participants that miss each other's first announcements meet at the next one, half a second
+// later (runtime's Context); their endpoints follow within milliseconds.
+constexpr double kSettled_s = 0.7;
 
 std::atomic<bool> g_interrupted = false;  // signal handlers reach nothing else
 struct sigaction g_old_int, g_old_term;
@@ -45,6 +47,25 @@ int say_nothing(const std::string& sentence) {
   return kNothing;
 }
 
+int run_one(const std::string& name, const Verb& verb, std::vector<std::string> arguments) {
+  CLI::App app(verb.summary, "goshawk " + name);
+  CommonOptions common;
+  app.add_flag("--json", common.json, "for programs: one JSON object a line");
+  app.add_option("--timeout", common.timeout_s, "longest wait for something to be there [s]")
+      ->check(CLI::Range(0.0, 86400.0))
+      ->capture_default_str();
+  const auto run = verb.prepare(app, common);
+  try {
+    app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+  } catch (const CLI::CallForHelp&) {
+    std::cout << app.help();
+    return 0;
+  } catch (const CLI::ParseError& e) {
+    return say_wrong_call(name + ": " + e.what() + "\n" + app.help());
+  }
+  return run();
+}
+
 int run_verb(const std::string& command, const std::vector<Verb>& verbs,
              std::vector<std::string> arguments) {
   if (arguments.empty()) return say_wrong_call(usage(command, verbs));
@@ -57,22 +78,7 @@ int run_verb(const std::string& command, const std::vector<Verb>& verbs,
   for (const auto& verb : verbs) {
     names.push_back(verb.name);
     if (verb.name != wanted) continue;
-    CLI::App app(verb.summary, "goshawk " + command + " " + verb.name);
-    CommonOptions common;
-    app.add_flag("--json", common.json, "for programs: one JSON object a line");
-    app.add_option("--timeout", common.timeout_s, "longest wait for something to be there [s]")
-        ->check(CLI::Range(0.0, 86400.0))
-        ->capture_default_str();
-    const auto run = verb.prepare(app, common);
-    try {
-      app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend() - 1));
-    } catch (const CLI::CallForHelp&) {
-      std::cout << app.help();
-      return 0;
-    } catch (const CLI::ParseError& e) {
-      return say_wrong_call(command + " " + wanted + ": " + e.what() + "\n" + app.help());
-    }
-    return run();
+    return run_one(command + " " + wanted, verb, {arguments.begin() + 1, arguments.end()});
   }
   const std::string near = runtime::nearest_name(wanted, names);
   return say_wrong_call("there is no 'goshawk " + command + " " + wanted + "'" +
@@ -119,15 +125,20 @@ bool Session::wait_for(double timeout_s, const std::function<bool()>& done) {
   return true;
 }
 
-void Session::settle(double timeout_s) {
-  std::size_t known = 0;
+void Session::settle(double timeout_s, const std::function<int()>& count) {
+  int known = 0;
   auto changed = Steady::now();
   wait_for(timeout_s, [&] {
-    const std::size_t now = context_->participants().size() + context_->endpoints().size();
+    const int now = count();
     if (now != known) changed = Steady::now();
     known = now;
     return known > 0 && seconds_since(changed) > kSettled_s;
   });
+}
+
+void Session::settle(double timeout_s) {
+  settle(timeout_s,
+         [&] { return int(context_->participants().size() + context_->endpoints().size()); });
 }
 
 std::vector<runtime::EndpointInfo> Session::endpoints_of(const std::string& topic) const {

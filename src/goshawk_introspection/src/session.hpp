@@ -32,6 +32,9 @@ struct Verb {
   std::function<std::function<int()>(CLI::App& app, CommonOptions& common)> prepare;
 };
 
+/// Parses and runs a command that is one verb. @param name behind "goshawk "
+int run_one(const std::string& name, const Verb& verb, std::vector<std::string> arguments);
+
 /// Finds the verb, parses, runs. A wrong call is a sentence and status 2; bugs throw.
 int run_verb(const std::string& command, const std::vector<Verb>& verbs,
              std::vector<std::string> arguments);
@@ -59,6 +62,8 @@ class Session {
   bool wait_for(double timeout_s, const std::function<bool()>& done);
   /// Waits until somebody is there and nobody new came for a moment.
   void settle(double timeout_s);
+  /// The same of anything that is counted.
+  void settle(double timeout_s, const std::function<int()>& count);
   std::vector<runtime::EndpointInfo> endpoints_of(const std::string& topic) const;
   /// @return the sentence for a topic that is not there, with the nearest one, and exit status
   int say_no_topic(const std::string& topic, double timeout_s) const;
