@@ -40,6 +40,7 @@ constexpr std::array kNames{
     Named{ErrorCode::stage_silent, "stage_silent"},
     Named{ErrorCode::io_failed, "io_failed"},
     Named{ErrorCode::collision, "collision"},
+    Named{ErrorCode::cancelled, "cancelled"},
 };
 
 constexpr auto kCodes = [] {
