@@ -20,7 +20,7 @@ using Vec4 = Eigen::Vector4d;
 // before the answer is believed, and after every few pivots, so that rounding does not gather.
 class LargestBall {
  public:
-  explicit LargestBall(std::span<const Polytope* const> polytopes) : polytopes_(polytopes) {}
+  explicit LargestBall(std::span<const HalfSpaces> polytopes) : polytopes_(polytopes) {}
 
   Ball solve() {
     if (!finite()) return {Vec3::Zero(), -std::numeric_limits<double>::infinity()};
@@ -47,8 +47,10 @@ class LargestBall {
   static constexpr int kPivotsUntilRefresh = 24;
 
   bool finite() const {
-    return std::ranges::all_of(polytopes_, [](const Polytope* p) {
-      return p->A.rows() == p->b.size() && p->A.allFinite() && p->b.allFinite();
+    return std::ranges::all_of(polytopes_, [](const HalfSpaces& p) {
+      using Row = Eigen::Map<const Eigen::VectorXd>;
+      return p.count >= 0 && Row(p.normals, 3 * p.count).allFinite() &&
+             Row(p.offsets, p.count).allFinite();
     });
   }
 
@@ -68,9 +70,10 @@ class LargestBall {
   // Distance to the nearest face, negative outside.
   double room_at(const Vec3& p) const {
     double room = std::numeric_limits<double>::infinity();
-    for (const Polytope* polytope : polytopes_) {
-      for (int i = 0; i < polytope->faces(); ++i) {
-        room = std::min(room, polytope->b[i] - polytope->A.row(i).dot(p));
+    for (const HalfSpaces& polytope : polytopes_) {
+      const double* n = polytope.normals;
+      for (int i = 0; i < polytope.count; ++i, n += 3) {
+        room = std::min(room, polytope.offsets[i] - (n[0] * p[0] + n[1] * p[1] + n[2] * p[2]));
       }
     }
     return room;
@@ -114,10 +117,10 @@ class LargestBall {
     double worst = 1e-12 * (1.0 + point_.head<3>().cwiseAbs().maxCoeff());
     const double x = point_[0], y = point_[1], z = point_[2], r = point_[3];
     const double* row = nullptr;
-    for (const Polytope* polytope : polytopes_) {
-      const double* n = polytope->A.data();  // by rows
-      const double* b = polytope->b.data();
-      for (int i = 0; i < polytope->faces() && !(first && row); ++i, n += 3) {
+    for (const HalfSpaces& polytope : polytopes_) {
+      const double* n = polytope.normals;
+      const double* b = polytope.offsets;
+      for (int i = 0; i < polytope.count && !(first && row); ++i, n += 3) {
         const double excess = n[0] * x + n[1] * y + n[2] * z + r - b[i];
         if (excess <= worst) continue;
         worst = excess;
@@ -129,7 +132,7 @@ class LargestBall {
     return row != nullptr;
   }
 
-  std::span<const Polytope* const> polytopes_;
+  std::span<const HalfSpaces> polytopes_;
   Eigen::Matrix4d basis_;    // rows are constraints
   Eigen::Matrix4d inverse_;  // of basis_
   Vec4 bound_;
@@ -137,6 +140,13 @@ class LargestBall {
   Vec4 entering_;
   double entering_bound_ = 0.0;
 };
+
+// A negative count where the sizes disagree.
+HalfSpaces half_spaces(const Polytope& polytope) {
+  static_assert(Polytope::Normals::IsRowMajor);
+  const int count = polytope.A.rows() == polytope.b.size() ? polytope.faces() : -1;
+  return {polytope.A.data(), polytope.b.data(), count};
+}
 
 }  // namespace
 
@@ -171,14 +181,18 @@ Polytope Polytope::box(const Vec3& lower_map, const Vec3& upper_map) {
   return polytope;
 }
 
+Ball chebyshev_ball(std::span<const HalfSpaces> polytopes) {
+  return LargestBall(polytopes).solve();
+}
+
 Ball chebyshev_ball(const Polytope& polytope) {
-  const Polytope* const parts[] = {&polytope};
-  return LargestBall(parts).solve();
+  const HalfSpaces parts[] = {half_spaces(polytope)};
+  return chebyshev_ball(parts);
 }
 
 Ball chebyshev_ball(const Polytope& a, const Polytope& b) {
-  const Polytope* const parts[] = {&a, &b};
-  return LargestBall(parts).solve();
+  const HalfSpaces parts[] = {half_spaces(a), half_spaces(b)};
+  return chebyshev_ball(parts);
 }
 
 double Corridor::min_overlap_radius_m() const {
