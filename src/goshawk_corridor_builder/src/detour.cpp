@@ -42,18 +42,11 @@ void Detour::gather(const BoxSet& obstacles, const Vec3& lower, const Vec3& uppe
 
 // The obstacle that reaches farthest into the hull of the segment's balls, or -1.
 int Detour::worst_in(const Segment& s) const {
-  const double most = std::max(s.needed.p, s.needed.q);
-  const Vec3 lower = s.p.cwiseMin(s.q).array() - most;
-  const Vec3 upper = s.p.cwiseMax(s.q).array() + most;
   double least = 0.0;
   int worst = -1;
   for (std::size_t i = 0; i < near_.size(); ++i) {
-    const Obstacle& o = near_[i];
-    if (((o.lower.array() - o.radius) >= upper.array()).any() ||
-        ((o.upper.array() + o.radius) <= lower.array()).any()) {
-      continue;
-    }
-    const double c = clearance(o, s, s.needed);
+    if (!meets(near_[i], s, s.needed)) continue;
+    const double c = clearance(near_[i], s, s.needed);
     if (c >= least) continue;
     least = c;
     worst = int(i);

@@ -65,6 +65,7 @@ Separation SegmentPolytope::build_within(const ObstacleLayers& map, const Segmen
   here.p -= base_;
   here.q -= base_;
   collect(map, local);
+  if (stop_when_thin && find_thin(here)) return Separation::thin;
 
   const Ellipsoid first = shrink_around_segment(here.p, here.q, boxes_);
   const auto [separation, at] =
@@ -75,6 +76,18 @@ Separation SegmentPolytope::build_within(const ObstacleLayers& map, const Segmen
   grow(first, extent, here, margins);
   redundancy_.filter(inflation_.planes(), extent, margins, faces_);
   return separation;
+}
+
+// Looks for an obstacle that the segment passes, but not with its balls.
+bool SegmentPolytope::find_thin(const Segment& segment) {
+  for (std::size_t i = 0; i < boxes_.size(); ++i) {
+    const Obstacle obstacle = boxes_.at(i);
+    if (!meets(obstacle, segment, segment.needed)) continue;
+    if (!(clearance(obstacle, segment, {}) > 0.0)) return false;  // perhaps it is blocked
+    in_the_way_ = obstacle;
+    return true;
+  }
+  return false;
 }
 
 // Obstacles beyond the local box may reach into it by their sphere.

@@ -43,6 +43,7 @@ class SegmentPolytope {
  private:
   Separation build_within(const ObstacleLayers& map, const Segment& segment, double reach_voxels,
                           bool stop_when_thin, const Margins& margins);
+  bool find_thin(const Segment& segment);
   void collect(const ObstacleLayers& map, const VoxelBox& local);
   void grow(const Ellipsoid& first, const Vec3& extent, const Segment& segment,
             const Margins& margins);

@@ -110,6 +110,48 @@ struct Slope {
   }
 };
 
+// Without taper the slope is linear between the planes of the box's faces, and never falls.
+// @return the middle of where it is zero. @pre slope(0) <= 0 <= slope(1)
+double root_of_pieces(const Slope& slope) {
+  double t[8] = {0.0};
+  int n = 1;
+  for (int a = 0; a < 3; ++a) {
+    const double d = slope.along[a];
+    if (std::abs(d) < 1e-12) continue;
+    for (const double face : {slope.obstacle.lower[a], slope.obstacle.upper[a]}) {
+      const double at = (face - slope.segment.p[a]) / d;
+      if (!(at > 0.0 && at < 1.0)) continue;
+      int k = n++;
+      for (; t[k - 1] > at; --k) t[k] = t[k - 1];  // t[0] is 0
+      t[k] = at;
+    }
+  }
+  t[n++] = 1.0;
+  double first = 0.0, last = 1.0;  // of the roots
+  double value = slope(0.0);
+  for (int i = 1; i < n; ++i) {
+    const double next = slope(t[i]);
+    const double root = t[i - 1] - value * (t[i] - t[i - 1]) / (next - value);
+    if (value < 0.0 && next >= 0.0) first = root;
+    if (value <= 0.0 && next > 0.0) {
+      last = root;
+      break;
+    }
+    value = next;
+  }
+  return 0.5 * (first + last);
+}
+
+// The distance less a radius that changes along the segment: convex, its slope is bisected.
+double root_by_halving(const Slope& slope) {
+  double lo = 0.0, hi = 1.0;
+  for (int k = 0; k < 40; ++k) {
+    const double t = 0.5 * (lo + hi);
+    (slope(t) < 0.0 ? lo : hi) = t;
+  }
+  return hi;
+}
+
 }  // namespace
 
 Margins Margins::for_coordinates(double largest_coordinate) {
@@ -120,26 +162,20 @@ Margins Margins::for_coordinates(double largest_coordinate) {
   return m;
 }
 
-// The distance to a box is convex along the segment; its slope is bisected.
 double nearest_parameter(const Obstacle& o, const Segment& s, const Room& room) {
-  constexpr int kSteps = 40;
   const Slope slope{o, s, s.q - s.p, room.q - room.p};
   if (slope(0.0) > 0.0) return 0.0;
   if (slope(1.0) < 0.0) return 1.0;
-  double first = 0.0;  // up to here the slope is negative
-  double hi = 1.0;
-  for (int k = 0; k < kSteps; ++k) {
-    const double t = 0.5 * (first + hi);
-    (slope(t) < 0.0 ? first : hi) = t;
+  return slope.taper == 0.0 ? root_of_pieces(slope) : root_by_halving(slope);
+}
+
+bool meets(const Obstacle& o, const Segment& s, const Room& room) {
+  const double reach = std::max(room.p, room.q) + o.radius;
+  for (int a = 0; a < 3; ++a) {
+    if (o.lower[a] - reach >= std::max(s.p[a], s.q[a])) return false;
+    if (o.upper[a] + reach <= std::min(s.p[a], s.q[a])) return false;
   }
-  double lo = hi;
-  if (slope(std::min(1.0, lo + 1e-6)) > 0.0) return lo;
-  double last = 1.0;  // from here on it is positive; flat between
-  for (int k = 0; k < kSteps; ++k) {
-    const double t = 0.5 * (lo + last);
-    (slope(t) > 0.0 ? last : lo) = t;
-  }
-  return 0.5 * (first + last);
+  return clearance(o, s, room) < 0.0;
 }
 
 double clearance(const Obstacle& o, const Segment& s, const Room& room) {

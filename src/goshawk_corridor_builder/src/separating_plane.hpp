@@ -72,8 +72,9 @@ enum class Separation {
 Separation separate(const Vec3& towards, const Obstacle& obstacle, const Segment& segment,
                     const Margins& margins, Plane& plane);
 
-/// How far obstacle and hull of the balls are apart: negative by how much they are not.
+/// How far obstacle and hull of the balls are apart; below zero where they meet.
 double clearance(const Obstacle& obstacle, const Segment& segment, const Room& room);
+bool meets(const Obstacle& obstacle, const Segment& segment, const Room& room);
 
 /// Where between p (0) and q (1) an obstacle is nearest, radii of `room` allowed for; the middle
 /// of what is inside.
