@@ -41,7 +41,7 @@ Result<Vec3> parse_point(const std::string& text) {
     const auto [stop, error] = std::from_chars(at, end, point[axis]);
     const bool last = axis == 2;
     if (error != std::errc{} || (last ? stop != end : stop == end || *stop != ',')) {
-      return fail(ErrorCode::invalid_input,
+      return fail(ErrorCode::invalid_parameter,
                   "'" + text + "' is not a point: write x,y,z in metres, as in 3,0,1");
     }
     at = stop + 1;

@@ -24,7 +24,7 @@ std::optional<int> parse(CLI::App& app, Arguments arguments);
 /// For counts and seeds.
 CLI::Validator not_negative();
 
-/// "1,2,3" [m]. @return invalid_input for anything but three numbers
+/// "1,2,3" [m]. @return invalid_parameter for anything but three numbers
 Result<Vec3> parse_point(const std::string& text);
 
 /// Prints the failure: a sentence on stderr, or one object {ok, code, message} on stdout.
