@@ -2,6 +2,7 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 #include "goshawk/core/grid_geometry.hpp"
 #include "goshawk/core/polytope.hpp"
@@ -14,6 +15,9 @@ std::vector<Vec3> vertices_of(const Polytope& polytope);
 /// Do the open interiors of a polytope and of a cube meet? All corners of what they have in
 /// common are found; where it has an interior, their mean lies in it.
 bool interiors_meet(const Polytope& polytope, const Vec3& lower, const Vec3& upper);
+
+/// Does a polytope's interior meet an occupied cube, or is it unbounded?
+bool cuts_into_a_voxel(const Polytope& polytope, const VoxelGrid& grid);
 
 /// The least distance between a polytope and a box, by trying every pair of their corners, edges
 /// and faces; 0 where they meet.
