@@ -27,6 +27,7 @@ class PolytopeInflation {
                  const Segment& segment, bool stop_when_thin, const Margins& margins);
 
   const std::vector<Plane>& planes() const { return planes_; }
+  void swap_planes(PolytopeInflation& other) { planes_.swap(other.planes_); }
 
  private:
   void add_local_box(const Vec3& extent, const Segment& segment, const Margins& margins);

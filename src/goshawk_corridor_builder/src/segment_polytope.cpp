@@ -1,5 +1,6 @@
 #include "segment_polytope.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -8,7 +9,13 @@
 namespace goshawk::corridor_builder {
 namespace {
 
-constexpr int kHalvings = 3;  // of the local box, for max_faces
+constexpr int kHalvings = 3;          // of the local box, for max_faces
+constexpr double kWorthwhile = 1.05;  // a further pass must begin with an ellipsoid so much larger
+
+// Up to a factor.
+double volume_of(const Ellipsoid& ellipsoid) {
+  return 1.0 / std::sqrt(ellipsoid.metric.determinant());
+}
 
 // At least half a voxel: the balls around the ends of the segment lie inside.
 VoxelBox local_box(const Index3& size, const Segment& segment, double wanted_reach) {
@@ -106,9 +113,10 @@ void SegmentPolytope::grow(const Ellipsoid& first, const Vec3& extent, const Seg
   for (int pass = 0; pass < config_.growth_passes; ++pass) {
     Ellipsoid grown;
     if (!grow_inscribed_ellipsoid(inflation_.planes(), ellipsoid, grown)) return;
+    if (pass > 0 && volume_of(grown) < kWorthwhile * volume_of(ellipsoid)) return;
     const auto result = regrown_.inflate(grown, boxes_, extent, segment, false, margins);
     if (result.separation == Separation::blocked) return;
-    std::swap(inflation_, regrown_);
+    inflation_.swap_planes(regrown_);
     ellipsoid = grown;
   }
 }

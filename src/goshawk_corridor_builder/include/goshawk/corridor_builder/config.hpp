@@ -14,7 +14,7 @@ struct Config {
   std::string margin = "grown_grid";    // or sphere: a ball that is kept out of the raw map
   double local_box_m = 2.0;             // how far a polytope may reach sideways of its segment
   double max_segment_m = 8.0;           // longer segments are split into equal parts
-  int growth_passes = 1;                // re-inflations from the inscribed ellipsoid
+  int growth_passes = 3;                // re-inflations from the inscribed ellipsoid, at most
   int max_faces = 64;                   // a polytope with more is built again in a smaller box
   bool bend_path = true;                // where it grazes, so that half a voxel fits around it
   double joint_clearance_voxels = 1.0;  // how far joints keep from faces, where there is room
@@ -39,7 +39,8 @@ void describe(Self& config, Visitor&& visit) {
   visit("max_segment_m", config.max_segment_m, "m",
         "path segments longer than this are split into equal parts", Range{0.01, 1000.0});
   visit("growth_passes", config.growth_passes, "",
-        "how often a polytope is built anew around its inscribed ellipsoid (0: never)",
+        "how often, at most, a polytope is built anew around its inscribed ellipsoid; it ends "
+        "early where that has hardly grown",
         Range{0.0, 10.0});
   visit("max_faces", config.max_faces, "",
         "a polytope with more faces is built again in a local box of half the reach, at most "
