@@ -41,7 +41,7 @@ class Chain {
   }
   /// @return the new last polytope, to be overwritten
   Faces& append() {
-    if (count_ == polytopes_.size()) polytopes_.emplace_back();
+    if (count_ == polytopes_.size()) polytopes_.emplace_back().reserve(kManyFaces);
     return polytopes_[count_++];
   }
   void drop_last() { --count_; }
@@ -52,6 +52,8 @@ class Chain {
   }
 
  private:
+  static constexpr std::size_t kManyFaces = 64;  // more are rare: polytopes change places
+
   std::vector<Faces> polytopes_;  // the first count_
   std::size_t count_ = 0;
 };

@@ -15,6 +15,10 @@ struct Faces {
   std::vector<double> offsets;  // [m]
 
   int size() const { return int(offsets.size()); }
+  void reserve(std::size_t faces) {
+    normals.reserve(3 * faces);
+    offsets.reserve(faces);
+  }
   void clear() {
     normals.clear();
     offsets.clear();

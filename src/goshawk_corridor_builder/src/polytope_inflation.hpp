@@ -27,6 +27,7 @@ class PolytopeInflation {
                  const Segment& segment, bool stop_when_thin, const Margins& margins);
 
   const std::vector<Plane>& planes() const { return planes_; }
+  void reserve(std::size_t planes) { planes_.reserve(planes); }
   void swap_planes(PolytopeInflation& other) { planes_.swap(other.planes_); }
 
  private:

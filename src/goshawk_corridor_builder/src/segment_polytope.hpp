@@ -26,7 +26,13 @@ struct ObstacleLayers {
 /// The polytope of one segment, by ellipsoid inflation.
 class SegmentPolytope {
  public:
-  explicit SegmentPolytope(const Config& config) : config_(config) {}
+  explicit SegmentPolytope(const Config& config) : config_(config) {
+    // They change places with each other: so that neither has to grow late.
+    faces_.reserve(RedundancyFilter::kMostPlanes);
+    fewest_.reserve(RedundancyFilter::kMostPlanes);
+    inflation_.reserve(RedundancyFilter::kMostPlanes);
+    regrown_.reserve(RedundancyFilter::kMostPlanes);
+  }
 
   /// @param segment [voxel edges, GridGeometry::to_grid] inside the grid
   /// @param stop_when_thin ends without a polytope where the balls around its ends do not fit
