@@ -53,7 +53,7 @@ Result<LoadedMap> load_map(const map_server::Config& config) {
   auto grown = map_server::make_voxel_grid(*raw, map_server::growth(config), 1);
   if (!grown) return grown.error();
   return LoadedMap{*std::move(raw), std::make_shared<const VoxelGrid>(*std::move(grown)),
-                   source->tree};
+                   source->tree, map_server::growth(config).unknown};
 }
 
 Result<Planner> Planner::create(const PlanningConfig& config) {
@@ -66,8 +66,10 @@ Result<Planner> Planner::create(const PlanningConfig& config) {
   return Planner(*std::move(search), *std::move(builder), *std::move(optimizer));
 }
 
-void Planner::set_map(std::shared_ptr<const VoxelGrid> grid) {
-  grid_ = std::move(grid);
+void Planner::set_map(const LoadedMap& map) {
+  grid_ = map.grown;
+  raw_.emplace(map_server::growing_voxels(map.raw.geometry, map.raw.occupied, map.raw.known,
+                                          map.unknown, map.grown->version));
   search_.set_map(grid_);
 }
 
@@ -84,8 +86,9 @@ Status Planner::run(const FlatState& start, const FlatState& goal, const Limits&
                         [&] { return search_.plan(start.position, goal.position); });
   if (!path) return path.error();
   plan.path = *std::move(path);
+  const auto raw = raw_->obstacles(grid_->inflation_m);
   auto corridor = run_stage(plan, "corridor_builder", std::string(builder_.implementation()),
-                            [&] { return builder_.build(*grid_, plan.path->waypoints_map); });
+                            [&] { return builder_.build(*grid_, plan.path->waypoints_map, &raw); });
   if (!corridor) return corridor.error();
   plan.corridor = *std::move(corridor);
   auto solution =
