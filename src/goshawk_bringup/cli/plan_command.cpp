@@ -87,7 +87,7 @@ int run(const Options& options, const std::string& map_file) {
   const auto map = load_map(config->map);
   if (!map) return report_failure(map.error(), json, kNotDone);
 
-  planner->set_map(map->grown);
+  planner->set_map(*map);
   FlatState from;
   FlatState to;
   from.position = *start;

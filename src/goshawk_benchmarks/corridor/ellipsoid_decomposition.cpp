@@ -1,12 +1,12 @@
-#include "ellipsoid_decomposition.hpp"
+#include "corridor/ellipsoid_decomposition.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <utility>
 #include <vector>
 
-namespace goshawk::corridor_builder::baseline {
+namespace goshawk::bench {
 namespace {
 
 struct LocalBox {
@@ -35,19 +35,24 @@ struct Frame {
   double distance(const Vec3& p) const { return local(p).cwiseQuotient(semi).norm(); }
 };
 
-const Vec3* nearest_inside(const Frame& e, const std::vector<Vec3>& points) {
-  const Vec3* nearest = nullptr;
+// Keeps the points inside the ellipsoid: it only shrinks, so that the others never matter again.
+// @return the nearest of them, or nullptr
+const Vec3* nearest_inside(const Frame& e, std::vector<Vec3>& points) {
+  std::size_t nearest = 0, kept = 0;
   double least = 1.0 - 1e-9;
   for (const Vec3& p : points) {
     const double d = e.distance(p);
-    if (d >= least) continue;
-    least = d;
-    nearest = &p;
+    if (d >= 1.0 - 1e-9) continue;
+    if (d < least) nearest = kept;
+    least = std::min(least, d);
+    points[kept++] = p;
   }
-  return nearest;
+  points.resize(kept);
+  return kept == 0 ? nullptr : &points[nearest];
 }
 
-Frame fit(const Vec3& p, const Vec3& q, const std::vector<Vec3>& points) {
+Frame fit(const Vec3& p, const Vec3& q, const std::vector<Vec3>& all) {
+  std::vector<Vec3> points = all;
   Frame e;
   const double a = std::max(0.5 * (q - p).norm(), 1e-3);
   e.center = 0.5 * (p + q);
@@ -67,6 +72,7 @@ Frame fit(const Vec3& p, const Vec3& q, const std::vector<Vec3>& points) {
   const Vec3 w = contact.normalized();
   e.axes << u, w, u.cross(w);
   e.semi.z() = a;
+  points = all;
   while (const Vec3* at = nearest_inside(e, points)) {
     const Vec3 y = e.local(*at).cwiseQuotient(e.semi);
     const double rest = 1.0 - y.x() * y.x() - y.y() * y.y();
@@ -88,19 +94,19 @@ Polytope decompose(const VoxelGrid& grid, const Vec3& p_map, const Vec3& q_map, 
   std::vector<Vec3> points = local_points(grid, box);
   const Frame e = fit(p_map, q_map, points);
   Polytope polytope = Polytope::box(box.lower, box.upper);
-  while (!points.empty()) {
-    const auto nearest = std::min_element(
-        points.begin(), points.end(),
-        [&](const Vec3& a, const Vec3& b) { return e.distance(a) < e.distance(b); });
-    const Vec3 at = *nearest;
+  std::vector<std::pair<double, Vec3>> rest;  // by distance
+  for (const Vec3& x : points) rest.push_back({e.distance(x), x});
+  while (!rest.empty()) {
+    const Vec3 at =
+        std::ranges::min_element(rest, {}, [](const auto& r) { return r.first; })->second;
     const Vec3 gradient = e.axes * e.local(at).cwiseQuotient(e.semi).cwiseQuotient(e.semi);
     const Vec3 n = gradient.normalized();
     const double d = n.dot(at);
     const double half_cube_m = 0.5 * grid.geometry.resolution_m * n.lpNorm<1>();
     polytope.add(n, planes == Planes::through_centres ? d : d - half_cube_m);
-    std::erase_if(points, [&](const Vec3& x) { return n.dot(x) >= d - 1e-9; });
+    std::erase_if(rest, [&](const auto& r) { return n.dot(r.second) >= d - 1e-9; });
   }
   return polytope;
 }
 
-}  // namespace goshawk::corridor_builder::baseline
+}  // namespace goshawk::bench
