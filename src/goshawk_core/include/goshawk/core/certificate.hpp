@@ -8,7 +8,7 @@
 namespace goshawk {
 
 /// What a velocity or acceleration limit bounds: its Euclidean length, or each component apart.
-enum class LimitNorm { euclidean, per_axis };
+enum class LimitNorm { euclidean, per_axis, horizontal_vertical };
 
 struct Limits {
   double v_max_m_s = 2.0;   // [m/s] > 0

@@ -41,6 +41,7 @@ struct SplineProblem {
   std::vector<double> durations;  // m
   std::vector<double> v_max;      // m, of each piece
   std::vector<double> a_max;      // m
+  std::vector<double> j_max;      // m, or none: no limit on the jerk
   std::vector<Joint> joints;      // m + 1: the ends, and a guess for the others
   Joint start_rate = Joint::Zero();
   Joint goal_rate = Joint::Zero();
