@@ -10,13 +10,14 @@ struct FaceSums {
 };
 
 GOSHAWK_INLINE void linearise_face(FaceLanes& f, const Lanes* y, FaceSums& to, Lanes& gap,
-                                   Lanes& proof, Lanes& worst) {
+                                   Lanes& proof, Lanes& worst, Lanes& outside) {
   f.residual = f.nx * y[0] + f.ny * y[1] + f.nz * y[2] - f.offset + f.s;
   f.inverse_s = 1.0 / f.s;
   f.weight = f.z * f.inverse_s;
   gap += f.s * f.z;
   proof += f.z * f.residual;
   worst = larger(worst, magnitude(f.residual));
+  outside = larger(outside, f.residual - f.s);
   const Lanes pull = f.weight * f.residual;
   const Lanes wx = f.weight * f.nx, wy = f.weight * f.ny, wz = f.weight * f.nz;
   to.g[0] += f.z * f.nx;
@@ -46,7 +47,7 @@ GOSHAWK_INLINE void add_diagonal(JointSums& joint, const double* m, Lanes w0, La
 }
 
 void linearise_faces(SplineState& w) {
-  Lanes gap = {}, proof = {}, worst = {};
+  Lanes gap = {}, proof = {}, worst = {}, outside = {};
   const Lanes zero = {};
   for (int p = 0; p < w.face_points; ++p) {
     const FaceRange& range = w.ranges[p];
@@ -54,7 +55,7 @@ void linearise_faces(SplineState& w) {
     const Lanes y[3] = {all(point[0]), all(point[1]), all(point[2])};
     FaceSums to;
     for (int i = range.begin; i < range.end; ++i) {
-      linearise_face(w.faces[i], y, to, gap, proof, worst);
+      linearise_face(w.faces[i], y, to, gap, proof, worst, outside);
     }
     JointSums& joint = w.joints[range.joint];
     const Lanes g = sums(to.g[0], to.g[1], to.g[2], zero);
@@ -69,6 +70,7 @@ void linearise_faces(SplineState& w) {
   w.gap += sum(gap);
   w.proof += sum(proof);
   w.primal_residual = larger(w.primal_residual, largest(worst));
+  w.face_violation = largest(outside);
 }
 
 // ds and dz of the predictor. @return the largest of -ds/s and -dz/z

@@ -60,7 +60,7 @@ GOSHAWK_INLINE void scatter(const LimitLanes& l, LimitSums& to, bool scale, Join
 }
 
 struct LimitTotals {
-  Lanes gap = {}, proof = {}, worst = {}, dual_eta = {}, pull_eta = {}, hessian_eta = {};
+  Lanes gap = {}, proof = {}, worst = {}, outside = {}, dual_eta = {}, pull_eta = {}, hessian_eta = {};
 };
 
 template <bool Over>
@@ -83,6 +83,7 @@ GOSHAWK_INLINE void linearise_limit(SplineState& w, int k, LimitLanes& l, LimitT
     total.gap += row.s * row.z;
     total.proof += row.z * row.residual;
     total.worst = larger(total.worst, magnitude(row.residual));
+    total.outside = larger(total.outside, row.residual - row.s);
     total.dual_eta += row.z * row.slope_e;
     total.pull_eta += row.weight * row.residual * row.slope_e;
     total.hessian_eta += row.weight * row.slope_e * row.slope_e;
@@ -115,6 +116,7 @@ void linearise_limits(SplineState& w, LimitLanes* limits) {
   w.gap += sum(total.gap);
   w.proof += sum(total.proof);
   w.primal_residual = larger(w.primal_residual, largest(total.worst));
+  w.limit_violation = larger(w.limit_violation, largest(total.outside));
   w.dual_eta += sum(total.dual_eta);
   w.pull_eta += sum(total.pull_eta);
   w.hessian_eta += sum(total.hessian_eta);
@@ -167,8 +169,13 @@ void pull_limits(SplineState& w, LimitLanes* limits, double mu) {
     LimitLanes& l = limits[k];
     const Lanes g = Over ? l.inverse_e : all(1.0);
     Lanes pull[3] = {};
+    Lanes dy[3];
+    points_of(l, w.dx + 3 * k, dy);
+    const Lanes de = l.e1 * w.deta;
     for (int r = 0; r < w.rows; ++r) {
       auto& row = l.row[r];
+      const Along a = along<Over>(w, l, r, dy, de);
+      row.residual += w.reach * w.reach * a.bend;  // the predictor's second order
       row.target = (mu - row.target) * row.inverse_s;
       const Lanes c = row.target + row.weight * row.residual;
       pull_eta += c * row.slope_e;

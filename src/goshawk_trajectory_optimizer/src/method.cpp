@@ -138,7 +138,13 @@ bool TrajectoryOptimizer::Method::solve_scale(const Request& request, Plan& plan
                                               double gap, double end_slack, double& kappa) {
   if (!make_problem(request, plan, true, config_.time_weight, reach_m, problem_, units_, end_slack))
     return false;
-  last_ = solver_.solve(problem_, {config_.max_iterations, gap, 1e-8, 1e-3});
+  last_ = solver_.solve(
+      problem_, {.max_iterations = config_.max_iterations,
+                 .gap = gap,
+                 .feasibility = 1e-8,
+                 // From rest to rest the durations are set to what the limits need afterwards.
+                 .limit_feasibility = request.rests() ? 1e-3 : 1e-8,
+                 .dual_feasibility = 1e-3});
   iterations_ += last_.iterations;
   ++solves_;
   if (last_.status != SplineSolver::Status::solved || !(last_.eta > 0.0)) return false;
@@ -169,7 +175,7 @@ bool TrajectoryOptimizer::Method::solve_fixed(const Request& request, Plan& plan
     last_.status = SplineSolver::Status::infeasible;
     return false;
   }
-  last_ = solver_.solve(problem_, {config_.max_iterations, 1e-7, 1e-9, 1e-6});
+  last_ = solver_.solve(problem_, {config_.max_iterations, 1e-7, 1e-9, 1e-9, 1e-6});
   iterations_ += last_.iterations;
   if (last_.status != SplineSolver::Status::solved) return false;
   take_solution(request, solver_.joints(), units_, 1.0, plan);

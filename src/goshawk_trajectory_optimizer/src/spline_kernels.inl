@@ -75,7 +75,7 @@ void measure_dual_residual(SplineState& w) {
 
 void linearise(SplineState& w) {
   w.dual_eta = w.pull_eta = w.hessian_eta = 0.0;
-  w.gap = w.proof = w.primal_residual = 0.0;
+  w.gap = w.proof = w.primal_residual = w.face_violation = w.limit_violation = 0.0;
   start_sums(w);
   linearise_faces(w);
   linearise_limits<false>(w, w.velocity);
@@ -92,7 +92,8 @@ double predict(SplineState& w) {
   worst = larger(worst, predict_limits<false>(w, w.velocity));
   worst = larger(worst, predict_limits<true>(w, w.acceleration));
   if (w.jerk_limit != nullptr) worst = larger(worst, predict_limits<true>(w, w.jerk_limit));
-  return 1.0 / worst;
+  w.reach = worst > 1.0 ? 1.0 / worst : 1.0;
+  return w.reach;
 }
 
 double correct(SplineState& w, double mu) {

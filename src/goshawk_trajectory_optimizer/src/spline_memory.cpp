@@ -2,13 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <utility>
 
 namespace goshawk::trajectory_optimizer {
 namespace {
 
 constexpr double kStartMargin = 0.1;  // of the first slacks, in the problem's units
+constexpr double kPull = 1.0;         // to the guess, beside the weight of the jerk
+// The first duality gap in objectives of the guess. With fixed durations the objective is all
+// jerk, and the constraints raise it many times over.
+constexpr double kFirstGap = 2.0;
+constexpr double kFarOff = 10.0;  // squared limits: the time scale begins where it is enough
+constexpr double kFirstGapFixed = 300.0;
 
 Lanes padded(const Vec3& v) {
   return Lanes{v[0], v[1], v[2], 0.0};
@@ -179,8 +184,8 @@ Joint SplineSolver::Memory::joint(int k) const {
 void SplineSolver::Memory::smooth_guess() {
   const SplineKernels& kernels = spline_kernels();
   const double time_weight = std::exchange(state.time_weight, 0.0);
+  const bool ends_move = std::exchange(state.ends_move, false);
   kernels.linearise(state);
-  static const double kPull = getenv("PULL") ? atof(getenv("PULL")) : 1.0;
   const double pull = kPull * jerk_weight_;
   for (JointSums& joint : joints_) {
     joint.block[0][0] += Lanes{pull, 0.0, 0.0, pull};
@@ -193,6 +198,7 @@ void SplineSolver::Memory::smooth_guess() {
   }
   state.eta = 1.0;
   state.time_weight = time_weight;
+  state.ends_move = ends_move;
 }
 
 void SplineSolver::Memory::start() {
@@ -217,8 +223,12 @@ void SplineSolver::Memory::start() {
     row.z = Lanes{};
   });
   spline_kernels().linearise(state);
+  if (state.scale && !state.ends_move && state.limit_violation > kFarOff) {
+    state.eta = 1.0 + state.limit_violation;
+    spline_kernels().linearise(state);
+  }
   state.degree = rows;
-  const double mu = std::max(state.objective, 1e-6) / rows;
+  const double mu = (state.scale ? kFirstGap : kFirstGapFixed) * std::max(state.objective, 1e-6) / rows;
   each_row([&](auto& row) {
     for (int j = 0; j < 4; ++j) {
       row.s[j] = std::max(1.0 - row.residual[j], kStartMargin);

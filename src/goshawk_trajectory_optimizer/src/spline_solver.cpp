@@ -2,15 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 
 #include "spline_memory.hpp"
 
 namespace goshawk::trajectory_optimizer {
 namespace {
 
-constexpr double kStepFraction = 0.99;  // of the way to the boundary
+constexpr double kStepFraction = 0.995;  // of the way to the boundary
 
 // Farkas: for any x', z'f(x') >= z'(f(x) + s) - s'z + (f'z)'(x' - x), as each f is convex. Where
 // that is above zero for every x' within reach of x, no x' within reach satisfies f(x') <= 0.
@@ -35,18 +33,60 @@ SplineSolver::Outcome SplineSolver::solve(const SplineProblem& problem, const Se
   }
   memory_->start();
   iterate(settings, out);
+  const bool gave_up =
+      out.status == Status::numerical_trouble || out.status == Status::iteration_limit;
+  if (gave_up && !problem.scale && needs_more_time(problem, settings, out)) {
+    out.status = Status::infeasible;
+    return out;
+  }
   solution_.resize(problem.joints.size());
   for (int k = 0; k <= problem.pieces(); ++k) solution_[std::size_t(k)] = memory_->joint(k);
   return out;
+}
+
+// Relaxes the limits of a problem with fixed durations by an unknown eta, which always has an
+// answer inside the polytopes, and bounds the least eta from below. Above 1: infeasible.
+bool SplineSolver::needs_more_time(const SplineProblem& problem, const Settings& settings,
+                                   Outcome& out) {
+  constexpr double kSmooth = 1e-3;  // what the jerk may add to eta within the limits
+  relaxed_ = problem;
+  relaxed_.scale = true;
+  relaxed_.time_weight = 1.0;
+  relaxed_.jerk_weight = 1.0;
+  relaxed_.start_rate.setZero();
+  relaxed_.goal_rate.setZero();
+  // Jerk points are differences of acceleration points: |j| <= 6 a_max / T, in every norm here
+  // up to sqrt(3).
+  double jerk_bound = 0.0;
+  for (std::size_t k = 0; k < problem.durations.size(); ++k) {
+    const double T = problem.durations[k];
+    jerk_bound += 0.5 * T * std::pow(6.0 * std::sqrt(3.0) * problem.a_max[k] / T, 2);
+  }
+  relaxed_.jerk_weight = kSmooth / jerk_bound;
+  memory_->load(relaxed_);
+  memory_->start();
+  Settings coarse = settings;
+  coarse.gap = 1e-4;
+  coarse.dual_feasibility = 1e-6;
+  Outcome relaxed;
+  iterate(coarse, relaxed);
+  out.iterations += relaxed.iterations;
+  if (relaxed.status != Status::solved) return false;
+  const SplineState& s = memory_->state;
+  return s.objective + s.proof - s.gap > 1.0 + kSmooth;
 }
 
 void SplineSolver::iterate(const Settings& settings, Outcome& out) {
   SplineState& s = memory_->state;
   const SplineKernels& kernels = spline_kernels();
   const auto converged = [&] {
-    return s.primal_residual <= settings.feasibility &&
-           s.gap <= settings.gap * std::abs(s.objective) + 1e-14;
+    // The bound on the optimum below is the objective plus z'f(x), and z'f(x) = proof - gap.
+    const double gap = std::max(s.gap, s.gap - s.proof);
+    return s.face_violation <= settings.feasibility &&
+           s.limit_violation <= settings.limit_feasibility &&
+           gap <= settings.gap * std::abs(s.objective) + 1e-14;
   };
+  double first_gap = 0.0;
   for (;; ++out.iterations) {
     kernels.linearise(s);
     out.objective = s.objective;
@@ -58,6 +98,8 @@ void SplineSolver::iterate(const Settings& settings, Outcome& out) {
       out.status = Status::solved;
       return;
     }
+    first_gap = out.iterations == 0 ? s.gap : first_gap;
+    if (!(s.gap < 1e6 * (first_gap + 1e-6))) break;  // multipliers without bound
     if (proves_infeasible(s)) {
       out.status = Status::infeasible;
       return;
@@ -70,14 +112,13 @@ void SplineSolver::iterate(const Settings& settings, Outcome& out) {
       out.status = Status::stopped;
       return;
     }
-    if (!std::isfinite(s.gap) || !kernels.factor(s)) break;
-    const double reach = std::min(1.0, kernels.predict(s));
+    if (!kernels.factor(s)) break;
+    const double reach = kernels.predict(s);
     // s'z where the predictor ends, as ds's + dz'z = -s'z.
     const double ahead = (1.0 - reach) * s.gap + reach * reach * s.product;
     const double sigma = std::pow(std::clamp(ahead / s.gap, 0.0, 1.0), 3);
     const double step = std::min(1.0, kStepFraction * kernels.correct(s, sigma * s.gap / s.degree));
-    if (getenv("TR")) std::printf("%2d obj %.6g gap %.3g pr %.2g du %.2g eta %.4f reach %.3f sigma %.3g step %.3f\n", out.iterations, s.objective, s.gap, s.primal_residual, s.dual_residual, s.eta, reach, sigma, step);
-    if (!(step > 1e-8)) break;
+    if (!(step > 1e-7)) break;
     kernels.apply(s, step);
   }
   // Rounding ends the method before the dual residual where slacks are tiny; what counts for the

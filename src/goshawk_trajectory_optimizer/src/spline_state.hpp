@@ -94,6 +94,8 @@ struct SplineState {
   double objective = 0.0, gap = 0.0, primal_residual = 0.0, dual_residual = 0.0;
   double multiplier_residual = 0.0;  // sum of |G'z| over the unknowns
   double proof = 0.0;                // z' (f + s)
+  double face_violation = 0.0, limit_violation = 0.0;
+  double reach = 1.0;                // step of the predictor to the boundary, at most 1
   double product = 0.0;              // ds'dz of the predictor
 };
 

@@ -19,7 +19,8 @@ class SplineSolver {
   struct Settings {
     int max_iterations = 60;
     double gap = 1e-8;               // relative duality gap
-    double feasibility = 1e-9;       // primal residual
+    double feasibility = 1e-9;       // largest violation of a face
+    double limit_feasibility = 1e-9; // of a limit, relative and squared
     double dual_feasibility = 1e-7;  // dual residual, relative
     /// Asked before each iteration; true ends the solve. Empty: never.
     const std::function<bool()>* stop = nullptr;
@@ -48,8 +49,10 @@ class SplineSolver {
  private:
   struct Memory;
   void iterate(const Settings& settings, Outcome& out);
+  bool needs_more_time(const SplineProblem& problem, const Settings& settings, Outcome& out);
 
   std::unique_ptr<Memory> memory_;
+  SplineProblem relaxed_;
   std::vector<Joint> solution_;
 };
 
