@@ -20,12 +20,17 @@ void FlyOptions::add_to(CLI::App& app) {
   map.add_to(app);
   app.add_option("--start", start, "x,y,z [m] where the vehicle hovers at first (default 3,0,1)");
   app.add_option("--goal", goals, "x,y,z [m]; may repeat, for a tour (default 3,8,2)");
-  app.add_option("--random", random, "fly this many random reachable goals instead");
-  app.add_option("--seed", seed, "of the random goals")->capture_default_str();
+  app.add_option("--random", random, "fly this many random reachable goals instead")
+      ->check(not_negative());
+  app.add_option("--seed", seed, "of the random goals")
+      ->capture_default_str()
+      ->check(not_negative());
   app.add_option("--min-distance", min_distance_m, "[m] between random goals")
       ->capture_default_str();
   app.add_option("--density", world_density, "of the made world (default 0.4)");
-  app.add_option("--world-seed", world_seed, "of the made world")->capture_default_str();
+  app.add_option("--world-seed", world_seed, "of the made world")
+      ->capture_default_str()
+      ->check(not_negative());
   app.add_option("--launch", launch,
                  "launch file: flight (a process each), flight_container (one), "
                  "or one of your own")

@@ -27,7 +27,7 @@ constexpr Verb kVerbs[] = {
     {"world", "make a world, or convert a map", &cli::world_command},
     {"launch", "start what a launch file lists, supervised, until Ctrl-C", &cli::launch_command},
     {"run", "start one component: goshawk run COMPONENT --ros-args ...", &cli::run_command},
-    {"bench", "plan: latency of whole plans over DDS, by stage", &cli::bench_command},
+    {"bench", "measure plans over DDS, or a stage beside its rivals", &cli::bench_command},
     {"topic", "list, info, echo, hz, delay, bw, pub",
      [](const cli::Arguments& a) { return introspection::topic_command(a); }},
     {"node", "list", [](const cli::Arguments& a) { return introspection::node_command(a); }},

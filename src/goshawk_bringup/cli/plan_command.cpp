@@ -84,13 +84,15 @@ int run(const Options& options, const std::string& map_file) {
   from.position = *start;
   to.position = *goal;
   const Plan plan = planner->plan(from, to, *limits);
-  json ? void(std::printf("%s\n", plan_to_json(plan).dump(2, ' ', false, Json::error_handler_t::replace).c_str())) : print(plan);
-  if (!plan.outcome) {
-    return json ? kNotDone : report_failure(plan.outcome.error(), false, kNotDone);
+  // What cannot be saved is no success: said before, and instead of, the result.
+  if (plan.outcome && !options.save.empty()) {
+    if (const auto saved = save(plan, *map, *limits, options.save); !saved) {
+      return report_failure(saved.error(), json, kNotDone);
+    }
   }
-  if (options.save.empty()) return kDone;
-  const auto saved = save(plan, *map, *limits, options.save);
-  return saved ? kDone : report_failure(saved.error(), false, kNotDone);
+  json ? print_json(plan_to_json(plan)) : print(plan);
+  if (plan.outcome) return kDone;
+  return json ? kNotDone : report_failure(plan.outcome.error(), false, kNotDone);
 }
 
 }  // namespace

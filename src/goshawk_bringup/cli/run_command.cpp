@@ -1,7 +1,4 @@
-#include <unistd.h>
-
 #include <cstdio>
-#include <cstring>
 
 #include "folders.hpp"
 #include "verbs.hpp"
@@ -14,17 +11,6 @@ constexpr const char* kRunHelp =
     "                   --params-file FILE --log-level LEVEL]\n\n"
     "Starts one component, or several in one process, until Ctrl-C.\n"
     "goshawk param describe COMPONENT lists its parameters.\n";
-
-// Becomes another program. @return only where that fails
-int become(const Arguments& command) {
-  std::vector<char*> pointers;
-  for (const auto& word : command) pointers.push_back(const_cast<char*>(word.c_str()));
-  pointers.push_back(nullptr);
-  execv(pointers[0], pointers.data());
-  return report_failure(
-      fail(ErrorCode::io_failed, command[0] + " cannot be started: " + std::strerror(errno)), false,
-      kNotDone);
-}
 
 }  // namespace
 

@@ -11,5 +11,6 @@ int fly_command(const Arguments& arguments);
 int run_command(const Arguments& arguments);
 int launch_command(const Arguments& arguments);
 int bench_command(const Arguments& arguments);
+int bench_plan_command(const Arguments& arguments);
 
 }  // namespace goshawk::cli

@@ -96,7 +96,7 @@ int run(Options& o) {
   if (!saved) return report_failure(saved.error(), o.json, kNotDone);
   const double ratio = double(grown->count()) / double(grown->voxels());
   if (o.json) {
-    std::printf("%s\n", describe(*made, o, ratio).dump(2, ' ', false, Json::error_handler_t::replace).c_str());
+    print_json(describe(*made, o, ratio));
   } else {
     std::printf("%s: %s voxels of %g m, %lld occupied, %.1f %% blocked when grown by %g m\n",
                 o.output.c_str(), to_text(made->geometry.size).c_str(), made->geometry.resolution_m,
@@ -121,7 +121,9 @@ int world_command(const Arguments& arguments) {
   app.add_option("--density", o.spec.density,
                  "share that is blocked: of the grown map, for noise of the voxels themselves")
       ->capture_default_str();
-  app.add_option("--seed", o.spec.seed, "same seed, same world")->capture_default_str();
+  app.add_option("--seed", o.spec.seed, "same seed, same world")
+      ->capture_default_str()
+      ->check(not_negative());
   app.add_option("--inflation", o.spec.inflation_m, "[m] growth that the density refers to")
       ->capture_default_str();
   app.add_option("--keep-free", o.keep_free, "x,y,z [m] that stays free when grown; may repeat");

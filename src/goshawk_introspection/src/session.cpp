@@ -14,8 +14,10 @@ namespace {
 
 using Steady = std::chrono::steady_clock;
 
-constexpr double kSlice_s = 0.02;   // how often a wait looks for Ctrl-C
-constexpr double kSettled_s = 0.3;  // endpoints follow their participant within milliseconds
+constexpr double kSlice_s = 0.02;  // how often a wait looks for Ctrl-C
+// Participants that miss each other's first announcements meet at the next one, half a second
+// later (runtime's Context); their endpoints follow within milliseconds.
+constexpr double kSettled_s = 0.7;
 
 std::atomic<bool> g_interrupted = false;  // signal handlers reach nothing else
 struct sigaction g_old_int, g_old_term;
@@ -119,15 +121,20 @@ bool Session::wait_for(double timeout_s, const std::function<bool()>& done) {
   return true;
 }
 
-void Session::settle(double timeout_s) {
-  std::size_t known = 0;
+void Session::settle(double timeout_s, const std::function<int()>& count) {
+  int known = 0;
   auto changed = Steady::now();
   wait_for(timeout_s, [&] {
-    const std::size_t now = context_->participants().size() + context_->endpoints().size();
+    const int now = count();
     if (now != known) changed = Steady::now();
     known = now;
     return known > 0 && seconds_since(changed) > kSettled_s;
   });
+}
+
+void Session::settle(double timeout_s) {
+  settle(timeout_s,
+         [&] { return int(context_->participants().size() + context_->endpoints().size()); });
 }
 
 std::vector<runtime::EndpointInfo> Session::endpoints_of(const std::string& topic) const {

@@ -59,6 +59,8 @@ class Session {
   bool wait_for(double timeout_s, const std::function<bool()>& done);
   /// Waits until somebody is there and nobody new came for a moment.
   void settle(double timeout_s);
+  /// The same of anything that is counted.
+  void settle(double timeout_s, const std::function<int()>& count);
   std::vector<runtime::EndpointInfo> endpoints_of(const std::string& topic) const;
   /// @return the sentence for a topic that is not there, with the nearest one, and exit status
   int say_no_topic(const std::string& topic, double timeout_s) const;

@@ -31,8 +31,10 @@ int publish_all(Session& session, const runtime::RawPublisher& publisher,
     ++published;
   };
   publish();
+  int subscribers = publisher.matched();
   session.node().every(1.0 / options.rate_hz, [&] {
     if (options.count == 0 || published < options.count) publish();
+    subscribers = publisher.matched();
   });
   while (!failed && !Interruptible::interrupted() &&
          (options.count == 0 || published < options.count)) {
@@ -44,7 +46,7 @@ int publish_all(Session& session, const runtime::RawPublisher& publisher,
     std::cout << to_line({{"topic", options.topic},
                           {"type", options.type},
                           {"published", published},
-                          {"subscribers", publisher.matched()}})
+                          {"subscribers", subscribers}})
               << std::endl;
   }
   if (failed) return kNothing;
@@ -77,6 +79,8 @@ int pub(const CommonOptions& common, PubOptions options) {
     const int status = (*session)->say_no_reader(*name, options.type);
     return status;
   }
+  // All who read, not only the first that was met, get what is said only once.
+  if (options.count > 0) (*session)->settle(common.timeout_s, [&] { return publisher.matched(); });
   if (!heard) std::cerr << "goshawk: nobody reads " << *name << " so far" << std::endl;
   return publish_all(**session, publisher, *bytes, options, common);
 }

@@ -53,7 +53,11 @@ int read_topic(const CommonOptions& common, const ReadOptions& options,
   auto session = Session::open();
   if (!session) return say_wrong_call(session.error().message);
   auto& s = **session;
-  if (!s.wait_for(common.timeout_s, [&] { return !s.endpoints_of(*name).empty(); })) {
+  // Readers may be discovered first, but only writers tell what can be asked for.
+  const auto written = [&] {
+    return std::ranges::any_of(s.endpoints_of(*name), &runtime::EndpointInfo::writer);
+  };
+  if (!s.wait_for(common.timeout_s, written) && s.endpoints_of(*name).empty()) {
     if (Interruptible::interrupted()) return 0;
     return s.say_no_topic(*name, common.timeout_s);
   }

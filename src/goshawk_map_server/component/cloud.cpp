@@ -35,7 +35,8 @@ Result<std::vector<Vec3>> points_of(const sensor_msgs::msg::PointCloud2& m) {
   const auto offsets = offsets_of(m);
   if (!offsets) return offsets.error();
   const std::size_t row_points = std::size_t(m.width()) * m.point_step();
-  if (row_points == 0 || row_points > m.row_step() || std::size_t(m.row_step()) * m.height() > m.data().size()) {
+  if (row_points == 0 || row_points > m.row_step() ||
+      std::size_t(m.row_step()) * m.height() > m.data().size()) {
     return fail(ErrorCode::invalid_input,
                 "the cloud claims " + std::to_string(m.height()) + " x " +
                     std::to_string(m.width()) + " points of " + std::to_string(m.point_step()) +

@@ -28,7 +28,7 @@ Window window_around(Index3 brick, int reach, Index3 grid) {
               lo};
 }
 
-BitGrid growing_bits(const RawVoxels& raw, const Window& window, UnknownPolicy policy) {
+BitGrid growing_bits(const RawView& raw, const Window& window, UnknownPolicy policy) {
   BitGrid local(window.size, true);
   const std::size_t word0 = std::size_t(window.lower.x) / 64;
   for (int z = 0; z < window.size.z; ++z) {
@@ -64,7 +64,11 @@ Word valid_bits(Index3 brick, Index3 grid) {
 }  // namespace
 
 DirtyBricks::DirtyBricks(Index3 grid_size, int reach)
-    : size_(grid_size), counts_(brick_counts(grid_size)), reach_(reach), marked_(counts_, false) {}
+    : size_(grid_size),
+      counts_(brick_counts(grid_size)),
+      reach_(reach),
+      marked_(counts_, false),
+      became_known_(counts_, false) {}
 
 void DirtyBricks::mark(Index3 voxel, bool grows) {
   const int reach = grows ? reach_ : 0;
@@ -97,7 +101,7 @@ int reach_of(const Growth& growth, const GridGeometry& geometry) {
   return int(std::min(std::ceil(growth.inflation_m / geometry.resolution_m), double(farthest)));
 }
 
-Brick regrow(const RawVoxels& raw, const Growth& growth, Index3 index) {
+Brick regrow(const RawView& raw, const Growth& growth, Index3 index) {
   const Index3 grid = raw.geometry.size;
   const Window window = window_around(index, reach_of(growth, raw.geometry), grid);
   const BitGrid local = growing_bits(raw, window, growth.unknown);

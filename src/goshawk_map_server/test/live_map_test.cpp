@@ -123,7 +123,7 @@ TEST(LiveMap, BadScansChangeNothingAndBadPointsAreCounted) {
   const auto result = map.insert_scan(points, Vec3(0.55, 0.55, 0.55), 5.0).value();
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
   EXPECT_EQ(result.points_left_out, 3);  // a length that overflows is not finite either
-  EXPECT_GT(map.raw().known.count(), 5);
+  EXPECT_GT(map.grid().known.count(), 5);
   EXPECT_TRUE(map.insert_scan({}, Vec3::Ones(), 5.0));
 }
 
@@ -133,8 +133,8 @@ TEST(LiveMap, MissingReturnsDoNotBlockTheSensor) {
   const std::vector<Vec3> points{from, Vec3(3.05, 0.55, 0.55), from};
   EXPECT_EQ(map.insert_scan(points, from, 5.0).value().points_left_out, 2);
   const Index3 voxel = *map.grid().geometry.index_of(from);
-  EXPECT_TRUE(map.raw().known.get(voxel));
-  EXPECT_FALSE(map.raw().occupied.get(voxel));
+  EXPECT_TRUE(map.grid().known.get(voxel));
+  EXPECT_FALSE(map.raw_occupied().get(voxel));
 }
 
 TEST(LiveMap, StartsFromALoadedMap) {

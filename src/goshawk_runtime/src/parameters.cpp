@@ -81,7 +81,11 @@ Status ParameterSource::add_file(const std::string& path, std::string_view node_
 Status check_sections(const std::string& params_file, const std::vector<std::string>& known) {
   std::string faults;
   try {
-    for (const auto& section : YAML::LoadFile(params_file)) {
+    const YAML::Node file = YAML::LoadFile(params_file);
+    if (!file.IsNull() && !file.IsMap()) {
+      return fail(ErrorCode::invalid_parameter, params_file + " is not a map of node names");
+    }
+    for (const auto& section : file) {
       const std::string name = section.first.as<std::string>();
       const std::string node = name.substr(name.rfind('/') + 1);
       if (name == "/**" || std::ranges::find(known, node) != known.end()) continue;

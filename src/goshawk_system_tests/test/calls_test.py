@@ -1,49 +1,11 @@
 #!/usr/bin/python3
 """Wrong calls and bad files: each ends by itself, with the documented status, code and sentence."""
 
-import gzip
-import os
-
 import harness
-from harness import SystemTest
+import second_opinion
+from calls_case import DONE, NOT_DONE, WRONG_CALL, CallsCase, ascii_pcd
 
-DONE, NOT_DONE, WRONG_CALL = 0, 1, 2
 PLAN_KEYS = {"ok", "code", "message", "stages", "path", "corridor", "trajectory", "certificate"}
-
-
-def ascii_pcd(points, claimed=None):
-    head = (f"# .PCD v0.7\nVERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\n"
-            f"WIDTH {claimed or len(points)}\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\n"
-            f"POINTS {claimed or len(points)}\nDATA ascii\n")
-    return (head + "".join(f"{x} {y} {z}\n" for x, y, z in points)).encode()
-
-
-def ascii_ply(points, claimed=None):
-    head = (f"ply\nformat ascii 1.0\nelement vertex {claimed or len(points)}\nproperty float x\n"
-            "property float y\nproperty float z\nend_header\n")
-    return (head + "".join(f"{x} {y} {z}\n" for x, y, z in points)).encode()
-
-
-class CallsCase(SystemTest):
-    def expect(self, arguments, status, code, *words, timeout_s=30.0, cwd=None):
-        """One wrong call with --json and the same without it."""
-        arguments = [str(a) for a in arguments]
-        with self.subTest(call=" ".join(arguments)[:120]):
-            outcome = self.sandbox.goshawk(*arguments, "--json", timeout_s=timeout_s, cwd=cwd)
-            self.assert_civil(outcome)
-            self.assertEqual(outcome.status, status, str(outcome))
-            answer = self.json_object(outcome)
-            self.assertIs(answer["ok"], False)
-            self.assertEqual(answer["code"], code, str(outcome))
-            for word in words:
-                self.assertIn(str(word), answer["message"])
-            return answer
-        return None
-
-    def file(self, name, content):
-        path = self.sandbox.folder / name
-        path.write_bytes(content if isinstance(content, bytes) else content.encode())
-        return path
 
 
 class GoodPlan(CallsCase):
@@ -96,111 +58,6 @@ class GoodPlan(CallsCase):
             self.assertGreater((folder / name).stat().st_size, 1000, name)
 
 
-class BadMaps(CallsCase):
-    """Files of each ending that are no maps."""
-
-    ENDINGS = ("bt", "ot", "pcd", "ply", "3dmap")
-
-    def plan_on(self, path, code, *words):
-        self.expect(["plan", "--map", path, "--start", "1,1,1", "--goal", "2,2,1"], NOT_DONE, code,
-                    *words)
-
-    def test_missing_files(self):
-        for ending in self.ENDINGS:
-            self.plan_on(f"/no/such/map.{ending}", "map_unreadable", f"/no/such/map.{ending}")
-
-    def test_what_is_no_file(self):
-        folder = self.sandbox.folder / "folder.bt"
-        folder.mkdir()
-        self.plan_on(folder, "map_unreadable", "folder.bt")
-        pipe = self.sandbox.folder / "pipe.pcd"
-        os.mkfifo(pipe)
-        self.plan_on(pipe, "map_unreadable", "pipe.pcd")
-        self.plan_on("/dev/zero", "map_unreadable", "/dev/zero")
-
-    def test_empty_files(self):
-        for ending in self.ENDINGS:
-            self.plan_on(self.file(f"empty.{ending}", b""), "map_malformed", f"empty.{ending}")
-
-    def test_garbage(self):
-        noise = bytes((i * 7919 + i // 3) % 256 for i in range(5000))
-        for ending in self.ENDINGS:
-            self.plan_on(self.file(f"noise.{ending}", noise), "map_malformed", f"noise.{ending}")
-
-    def test_files_of_another_kind(self):
-        picture = b"\x89PNG\r\n\x1a\n" + bytes(200)
-        packed = gzip.compress(b"# Octomap OcTree binary file\n" * 50)
-        for ending in self.ENDINGS:
-            for name, content in (("picture", picture), ("packed", packed),
-                                  ("text", b"Dear reader,\nthis is no map.\n")):
-                self.plan_on(self.file(f"{name}.{ending}", content), "map_malformed",
-                             f"{name}.{ending}")
-
-    def test_unknown_endings(self):
-        for name in ("map.stl", "map", "map.bt.zip", "map.BTX"):
-            self.plan_on(self.file(name, b"x"), "map_unreadable", name)
-
-    def test_a_map_that_was_cut_off(self):
-        world = self.sandbox.folder / "world.bt"
-        self.assertEqual(self.sandbox.goshawk("world", world).status, DONE)
-        whole = world.read_bytes()
-        for share in (0.02, 0.3, 0.7, 0.999):
-            cut = self.file(f"cut{share}.bt", whole[:int(share * len(whole))])
-            self.plan_on(cut, "map_malformed", cut.name)
-        full = self.sandbox.folder / "world.ot"
-        self.assertEqual(self.sandbox.goshawk("world", full, "--convert", world).status, DONE)
-        cut = self.file("cut.ot", full.read_bytes()[:-3])
-        self.plan_on(cut, "map_malformed", cut.name)
-
-    def test_clouds_that_claim_more_than_they_bring(self):
-        points = [(0, 0, 0), (1, 1, 1)]
-        for claimed in (3, 10**9, 10**18):
-            self.plan_on(self.file("claim.pcd", ascii_pcd(points, claimed)), "map_malformed")
-            self.plan_on(self.file("claim.ply", ascii_ply(points, claimed)), "map_malformed")
-
-    def test_clouds_without_a_usable_point(self):
-        points = [("nan", 0, 0), (0, "inf", 0)]
-        self.plan_on(self.file("nan.pcd", ascii_pcd(points)), "map_empty", "not finite")
-        self.plan_on(self.file("nan.ply", ascii_ply(points)), "map_empty", "not finite")
-
-    def test_a_cloud_that_spans_too_much(self):
-        points = [(0, 0, 0), (1e6, 1e6, 1e6)]
-        self.plan_on(self.file("far.pcd", ascii_pcd(points)), "map_too_large", "resolution")
-        points = [(0, 0, 0), (1e30, 0, 0)]
-        self.plan_on(self.file("farther.ply", ascii_ply(points)), "map_too_large")
-
-    def test_a_3dmap_with_wrong_numbers(self):
-        for text in ("voxel 10 10\n", "voxel -1 5 5\n", "voxel 5 5 5\n9 9 9\n", "voxel x y z\n",
-                     "voxel 0 5 5\n"):
-            self.plan_on(self.file("wrong.3dmap", text), "map_malformed")
-        self.plan_on(self.file("huge.3dmap", "voxel 100000 100000 100000\n0 0 0\n"),
-                     "map_too_large")
-
-    def test_a_world_without_free_space(self):
-        points = [(0.1 + 0.2 * x, 0.1 + 0.2 * y, 0.1 + 0.2 * z)
-                  for x in range(10) for y in range(10) for z in range(10)]
-        full = self.file("full.pcd", ascii_pcd(points))
-        self.plan_on(full, "map_empty")
-        self.expect(["fly", "--map", full, "--random", "1", "--output",
-                     self.sandbox.folder / "out"], NOT_DONE, "map_empty")
-
-    def test_truth_the_same_cloud_in_two_formats_is_a_map(self):
-        points = [(0, 0, 0), (5, 5, 3)]
-        for name, content in (("good.pcd", ascii_pcd(points)), ("good.ply", ascii_ply(points))):
-            outcome = self.sandbox.goshawk("plan", "--map", self.file(name, content), "--start",
-                                           "1,1,1", "--goal", "4,4,2", "--json")
-            self.assertEqual(outcome.status, DONE, str(outcome))
-
-    def test_the_other_verbs_say_the_same(self):
-        noise = self.file("noise.bt", b"noise")
-        self.expect(["fly", "--map", noise, "--random", "1", "--output",
-                     self.sandbox.folder / "out"], NOT_DONE, "map_malformed", "noise.bt")
-        self.expect(["world", self.sandbox.folder / "out.bt", "--convert", noise], NOT_DONE,
-                    "map_malformed", "noise.bt")
-        self.expect(["world", self.sandbox.folder / "out.bt", "--convert", "/no/such.pcd"],
-                    NOT_DONE, "map_unreadable", "/no/such.pcd")
-
-
 class BadPoints(CallsCase):
     def test_points_where_the_vehicle_cannot_be(self):
         inside = self.occupied_point()
@@ -212,7 +69,7 @@ class BadPoints(CallsCase):
     def occupied_point(self):
         world = self.sandbox.folder / "world.bt"
         self.assertEqual(self.sandbox.goshawk("world", world).status, DONE)
-        cubes = harness.OccupiedCubes(world)
+        cubes = second_opinion.OccupiedCubes(world)
         cube = sorted(cubes.cubes)[len(cubes.cubes) // 2]
         return ",".join(f"{(k - 32768 + 0.5) * cubes.resolution:.3f}" for k in cube)
 
@@ -224,7 +81,7 @@ class BadPoints(CallsCase):
     def test_texts_that_are_no_points(self):
         for option in ("--start", "--goal"):
             for text in ("1,2", "1,2,3,4", "a,b,c", "1,2,3m", " ", "1, 2, 3"):
-                self.expect(["plan", f"{option}={text}"], WRONG_CALL, "invalid_input")
+                self.expect(["plan", f"{option}={text}"], WRONG_CALL, "invalid_parameter")
                 self.expect(["fly", f"{option}={text}", "--output",
                              self.sandbox.folder / "out"], WRONG_CALL, "invalid_parameter")
 
@@ -315,7 +172,7 @@ class BadNumbers(CallsCase):
                                  (["--kind", "forrest"], ["forrest", "forest"]),
                                  (["--inflation=-1"], ["inflation"])]:
             self.expect(["world", out, *arguments], WRONG_CALL, "invalid_parameter", *words)
-        self.expect(["world", out, "--size", "5,5"], WRONG_CALL, "invalid_input", "5,5")
+        self.expect(["world", out, "--size", "5,5"], WRONG_CALL, "invalid_parameter", "5,5")
         self.expect(["world", out, "--keep-free", "100,0,0"], NOT_DONE, "invalid_input", "100")
         self.expect(["world", out, "--size", "5000,5000,5000"], NOT_DONE, "map_too_large")
         self.expect(["world", out, "--size", "1e300,1,1"], NOT_DONE, "map_too_large")
@@ -439,7 +296,7 @@ class Worlds(CallsCase):
         self.assertLessEqual({"file", "kind", "seed", "resolution_m", "size_voxels", "origin_m",
                               "upper_m", "occupied_voxels", "occupied_ratio", "inflation_m",
                               "grown_ratio"}, set(said))
-        cubes = harness.OccupiedCubes(path)
+        cubes = second_opinion.OccupiedCubes(path)
         self.assertEqual(said["occupied_voxels"], len(cubes.cubes))
         self.assertEqual(said["resolution_m"], cubes.resolution)
         self.assertAlmostEqual(said["grown_ratio"], 0.4, delta=0.01)
@@ -452,8 +309,8 @@ class Worlds(CallsCase):
             outcome = self.sandbox.goshawk("world", second, "--convert", first, "--json")
             self.assertEqual(outcome.status, DONE, str(outcome))
             first = second
-        self.assertEqual(harness.OccupiedCubes(self.sandbox.folder / "a.bt").cubes,
-                         harness.OccupiedCubes(self.sandbox.folder / "c.bt").cubes)
+        self.assertEqual(second_opinion.OccupiedCubes(self.sandbox.folder / "a.bt").cubes,
+                         second_opinion.OccupiedCubes(self.sandbox.folder / "c.bt").cubes)
 
 
 if __name__ == "__main__":

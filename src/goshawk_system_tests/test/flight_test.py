@@ -7,6 +7,7 @@ import pathlib
 import struct
 
 import harness
+import second_opinion
 from harness import SystemTest, note
 
 STAGE_KEYS = {"name", "implementation", "code", "compute_us", "wire_us", "counters"}
@@ -111,7 +112,7 @@ class FlightCase(SystemTest):
         for wanted, reached in zip(goal, end):
             self.assertAlmostEqual(wanted, reached, delta=0.1)
         track = [tuple(row[f"{axis}_m"] for axis in "xyz") for row in flown]
-        clearance = harness.smallest_clearance(folder / "world.bt", track)
+        clearance = second_opinion.smallest_clearance(folder / "world.bt", track)
         note(f"third opinion: centre {clearance:.3f} m from the nearest obstacle")
         self.assertGreater(clearance, harness.BODY_RADIUS_M)
 

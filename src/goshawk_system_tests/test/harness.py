@@ -6,7 +6,6 @@ A test file ends with `harness.main()`; CTest calls it with the names of test cl
 """
 
 import json
-import math
 import os
 import pathlib
 import re
@@ -19,6 +18,8 @@ import time
 import unittest
 import uuid
 import xml.etree.ElementTree as ElementTree
+
+from reporting import Report
 
 SOURCE = pathlib.Path(os.environ.get("GOSHAWK_SOURCE") or
                       pathlib.Path(__file__).resolve().parents[3])
@@ -338,67 +339,6 @@ def goal_message(goal, frame="map"):
             "pose": {"position": {"x": x, "y": y, "z": z}, "orientation": {"w": 1.0}}}
 
 
-class OccupiedCubes:
-    """The occupied cubes of an OctoMap .bt file, read here once more: an opinion that shares no
-    code with what it judges."""
-
-    DEPTH = 16
-
-    def __init__(self, path):
-        content = pathlib.Path(path).read_bytes()
-        head, self.bytes = content.split(b"\ndata\n", 1)
-        self.resolution = float(re.search(rb"\nres ([0-9.eE+-]+)", head).group(1))
-        self.at = 0
-        self.cubes = set()
-        self.read(0, (0, 0, 0))
-
-    def read(self, depth, key):
-        bits = int.from_bytes(self.bytes[self.at:self.at + 2], "little")
-        self.at += 2
-        size = 1 << (self.DEPTH - depth - 1)
-        inner = []
-        for child in range(8):
-            kind = bits >> (2 * child) & 3
-            corner = tuple(k + size * (child >> axis & 1) for axis, k in enumerate(key))
-            if kind == 3:
-                inner.append(corner)
-            elif kind == 2:
-                self.cubes.update((corner[0] + x, corner[1] + y, corner[2] + z)
-                                  for x in range(size) for y in range(size) for z in range(size))
-        for corner in inner:
-            self.read(depth + 1, corner)
-
-    def distance(self, point, most=0.6):
-        """[m] from the point to the nearest occupied cube, or `most`."""
-        r = self.resolution
-        key = [math.floor(p / r) + 32768 for p in point]
-        reach = math.ceil(most / r)
-        nearest = most
-        offsets = range(-reach, reach + 1)
-        for x in offsets:
-            for y in offsets:
-                for z in offsets:
-                    cube = (key[0] + x, key[1] + y, key[2] + z)
-                    if cube not in self.cubes:
-                        continue
-                    gap = [max((c - 32768) * r - p, p - (c - 32767) * r, 0.0)
-                           for c, p in zip(cube, point)]
-                    nearest = min(nearest, math.hypot(*gap))
-        return nearest
-
-
-def smallest_clearance(world, track, step_m=0.01):
-    """[m] from the track to the nearest obstacle: of the samples at least step_m apart."""
-    cubes = OccupiedCubes(world)
-    smallest, last = math.inf, None
-    for point in track:
-        if last is not None and math.dist(point, last) < step_m:
-            continue
-        last = point
-        smallest = min(smallest, cubes.distance(point))
-    return smallest
-
-
 class SystemTest(unittest.TestCase):
     """A test with a sandbox of its own; nothing that it started may outlive it."""
 
@@ -452,51 +392,6 @@ class StackTest(unittest.TestCase):
 
     json_object = SystemTest.json_object
     assert_civil = SystemTest.assert_civil
-
-
-class Report(unittest.TextTestResult):
-    """Collects one <testcase> a test, and says how long each took."""
-
-    def __init__(self, *arguments, **keywords):
-        super().__init__(*arguments, **keywords)
-        self.suite = ElementTree.Element("testsuite", name="system")
-        self.begin = {}
-        self.good = 0
-
-    def startTest(self, test):
-        self.begin[test] = time.monotonic()
-        super().startTest(test)
-
-    def add(self, test, tag=None, text=""):
-        group, _, name = test.id().rpartition(".")
-        seconds = time.monotonic() - self.begin.get(test, time.monotonic())
-        case = ElementTree.SubElement(self.suite, "testcase", classname=group, name=name,
-                                      time=f"{seconds:.3f}")
-        if tag:
-            ElementTree.SubElement(case, tag, message=text.strip().split("\n")[-1]).text = text
-
-    def addSuccess(self, test):
-        super().addSuccess(test)
-        self.good += 1
-        self.add(test)
-
-    def addSkip(self, test, reason):
-        super().addSkip(test, reason)
-        print(f"SKIPPED {test.id()}: {reason}", file=sys.stderr)
-        self.add(test, "skipped", reason)
-
-    def addFailure(self, test, err):
-        super().addFailure(test, err)
-        self.add(test, "failure", self.failures[-1][1])
-
-    def addError(self, test, err):
-        super().addError(test, err)
-        self.add(test, "error", self.errors[-1][1])
-
-    def addSubTest(self, test, subtest, err):
-        super().addSubTest(test, subtest, err)
-        if err is not None:
-            self.add(subtest, "failure", (self.failures + self.errors)[-1][1])
 
 
 def note(text):

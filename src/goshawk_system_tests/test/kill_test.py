@@ -7,6 +7,7 @@ import signal
 import time
 
 import harness
+import second_opinion
 from harness import GOSHAWK, StackTest, SystemTest, note, until
 
 # Free places of the default world, far from each other.
@@ -52,7 +53,7 @@ class KillNine(StackTest):
         return [f"{s['state']}/{s['code']}" for s in self.stack.states.lines()[since:]]
 
     def check_untouched(self):
-        clearance = harness.smallest_clearance(self.stack.world, self.stack.track(), 0.02)
+        clearance = second_opinion.smallest_clearance(self.stack.world, self.stack.track(), 0.02)
         note(f"smallest distance of the centre to an obstacle so far {clearance:.3f} m")
         self.assertGreater(clearance, harness.BODY_RADIUS_M)
 

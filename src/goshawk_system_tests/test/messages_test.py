@@ -7,6 +7,7 @@ import os
 import time
 
 import harness
+import second_opinion
 from harness import GOSHAWK, STAGES, StackTest, goal_message, note, until
 
 PLACES = [(3.0, 0.0, 1.0), (3.0, 8.0, 2.0)]
@@ -69,7 +70,7 @@ class BadMessages(StackTest):
         with self.subTest("outside"):
             self.expect_state((100, 0, 0), "goal_outside")
         with self.subTest("in an obstacle"):
-            cubes = harness.OccupiedCubes(self.stack.world)
+            cubes = second_opinion.OccupiedCubes(self.stack.world)
             cube = sorted(cubes.cubes)[len(cubes.cubes) // 2]
             self.expect_state([(k - 32767.5) * cubes.resolution for k in cube], "goal_occupied")
 
@@ -179,7 +180,7 @@ class BadMessages(StackTest):
         state = self.stack.fly_to((3.5, 6.1, 1.1))
         self.assertIsNotNone(state)
         self.assertEqual(state["state"], "arrived", state)
-        clearance = harness.smallest_clearance(self.stack.world, self.stack.track(), 0.02)
+        clearance = second_opinion.smallest_clearance(self.stack.world, self.stack.track(), 0.02)
         self.assertGreater(clearance, harness.BODY_RADIUS_M)
 
 

@@ -23,7 +23,8 @@ class LiveMap {
                                        std::int64_t max_voxels = 1'000'000'000);
 
   const VoxelGrid& grid() const { return grid_; }
-  const RawVoxels& raw() const { return raw_; }
+  /// Obstacles as they are, not grown; what is known of them is in grid().
+  const BitGrid& raw_occupied() const { return raw_occupied_; }
   const Growth& growth() const { return growth_; }
   const octomap::OcTree& tree() const { return *tree_; }
 
@@ -41,11 +42,11 @@ class LiveMap {
                                  double max_range_m);
 
  private:
-  LiveMap(OcTreePtr tree, RawVoxels raw, VoxelGrid grid, const Growth& growth);
+  LiveMap(OcTreePtr tree, BitGrid raw_occupied, VoxelGrid grid, const Growth& growth);
 
   OcTreePtr tree_;
-  RawVoxels raw_;
-  VoxelGrid grid_;
+  BitGrid raw_occupied_;
+  VoxelGrid grid_;  // its known bits serve the raw voxels as well
   Growth growth_;
 };
 

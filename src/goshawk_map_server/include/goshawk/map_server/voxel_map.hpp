@@ -17,6 +17,13 @@ struct RawVoxels {
   BitGrid known;          // outside is unknown
 };
 
+/// The same, held elsewhere.
+struct RawView {
+  const GridGeometry& geometry;
+  const BitGrid& occupied;
+  const BitGrid& known;
+};
+
 struct VoxelizeOptions {
   std::optional<Box> box;  // [m]; without: the box around all that is known
   std::int64_t max_voxels = 1'000'000'000;

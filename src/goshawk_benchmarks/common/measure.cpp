@@ -1,0 +1,77 @@
+#include "common/measure.hpp"
+
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+
+namespace goshawk::bench {
+namespace {
+
+/// Results go into a Report; Google Benchmark itself stays quiet.
+class Quiet : public benchmark::BenchmarkReporter {
+ public:
+  bool ReportContext(const Context&) override { return true; }
+  void ReportRuns(const std::vector<Run>&) override {}
+};
+
+double nearest_rank(const std::vector<double>& sorted, double q) {
+  if (sorted.empty()) throw std::logic_error("a quantile of no samples");
+  const double rank = std::ceil(q * double(sorted.size())) - 1.0;
+  return sorted[std::size_t(std::clamp(rank, 0.0, double(sorted.size() - 1)))];
+}
+
+double seconds_of(const std::function<void()>& run) {
+  const auto begin = std::chrono::steady_clock::now();
+  run();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+}  // namespace
+
+double Timing::quantile_us(double q) const {
+  return nearest_rank(sorted_us, q);
+}
+
+void Timing::append(const Timing& other) {
+  sorted_us.insert(sorted_us.end(), other.sorted_us.begin(), other.sorted_us.end());
+  std::ranges::sort(sorted_us);
+}
+
+std::vector<Timing> compare(const std::string& name, const std::vector<Contender>& contenders,
+                            int rounds) {
+  if (rounds < 1) throw std::logic_error("a comparison of no rounds");
+  std::vector<Timing> timings(contenders.size());
+  for (const Contender& c : contenders) c.run();
+  benchmark::RegisterBenchmark(name.c_str(),
+                               [&](benchmark::State& state) {
+                                 std::size_t turn = 0;
+                                 for (auto _ : state) {
+                                   double sum_s = 0.0;
+                                   for (std::size_t i = 0; i < contenders.size(); ++i) {
+                                     const std::size_t which = (i + turn) % contenders.size();
+                                     const double s = seconds_of(contenders[which].run);
+                                     timings[which].sorted_us.push_back(s * 1e6);
+                                     sum_s += s;
+                                   }
+                                   ++turn;
+                                   state.SetIterationTime(sum_s);
+                                 }
+                               })
+      ->Iterations(rounds)
+      ->UseManualTime();
+  Quiet quiet;
+  benchmark::RunSpecifiedBenchmarks(&quiet, ".*");
+  benchmark::ClearRegisteredBenchmarks();
+  for (Timing& t : timings) std::ranges::sort(t.sorted_us);
+  return timings;
+}
+
+double median(std::vector<double> values) {
+  std::ranges::sort(values);
+  return nearest_rank(values, 0.5);
+}
+
+}  // namespace goshawk::bench

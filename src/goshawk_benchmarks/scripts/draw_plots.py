@@ -1,0 +1,62 @@
+#!/usr/bin/env python3
+"""Draws the plots that a bench report asks for, as PNG beside it: draw_plots.py REPORT.json"""
+
+import json
+import os
+import sys
+
+try:
+    import matplotlib
+except ImportError:
+    sys.exit("pictures need matplotlib: run tools/setup, or install python3-matplotlib")
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
+
+MARKERS = "os^Dv<>ph*"
+
+
+def rows_of(report, plot):
+    return [r for r in report["rows"]
+            if all(r.get(k) == v for k, v in plot["where"].items())
+            and r.get(plot["x"]) is not None and r.get(plot["y"]) is not None]
+
+
+def draw(report, plot, folder):
+    rows = rows_of(report, plot)
+    if not rows:
+        return None
+    figure, axes = plt.subplots(figsize=(7, 4.5), constrained_layout=True)
+    series = list(dict.fromkeys(str(r.get(plot["series"], "")) for r in rows))
+    for index, name in enumerate(series):
+        mine = [r for r in rows if str(r.get(plot["series"], "")) == name]
+        xs, ys = [r[plot["x"]] for r in mine], [r[plot["y"]] for r in mine]
+        style = {"marker": MARKERS[index % len(MARKERS)], "label": name or None}
+        axes.plot(xs, ys, linestyle="none" if plot["points_only"] else "-", **style)
+    if plot["log_x"]:
+        axes.set_xscale("log")
+    if plot["log_y"]:
+        axes.set_yscale("log")
+    else:
+        axes.set_ylim(bottom=min(0, axes.get_ylim()[0]))
+    axes.set(title=plot["title"], xlabel=plot["x_label"], ylabel=plot["y_label"])
+    axes.grid(True, which="both", alpha=0.3)
+    if len(series) > 1:
+        axes.legend(fontsize="small")
+    path = os.path.join(folder, plot["file"] + ".png")
+    figure.savefig(path, dpi=130)
+    plt.close(figure)
+    return path
+
+
+def main():
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    with open(sys.argv[1], encoding="utf-8") as file:
+        report = json.load(file)
+    folder = os.path.dirname(os.path.abspath(sys.argv[1]))
+    for plot in report["plots"]:
+        path = draw(report, plot, folder)
+        print(f"drew {path}" if path else f"no rows for {plot['file']}", file=sys.stderr)
+
+
+main()
