@@ -10,7 +10,11 @@ namespace goshawk::trajectory_optimizer {
 namespace {
 
 constexpr double kAllFaces = std::numeric_limits<double>::infinity();
-constexpr double kCoarseGap = 1e-2;  // relative, of all passes but the last
+// Of the first reach: how far faces matter once the shape is nearly known.
+constexpr double kNarrow = 0.1;
+// Exponent of a piece's use of its limits: above 1, as what one piece gives up others need.
+constexpr double kBalance = 1.8;
+constexpr double kCoarseGap = 0.1;  // relative, of all passes but the last
 constexpr double kFineGap = 1e-3;
 constexpr std::array<double, 5> kEndSlack{2e-2, 2e-3, 2e-5, 0.0, 0.0};  // pass by pass
 
@@ -46,7 +50,11 @@ Result<Solution> TrajectoryOptimizer::Method::scale(const Request& request) {
   Plan plan = cut_trapezoid(request, config_);
   if (plan.stays) return fixed(request);
   if (request.rests()) {
-    refine(request, plan);
+    refine(request, plan, config_.refinement_passes);
+    if (!best_ && config_.refinement_passes > 0) {  // durations too uneven to compute with
+      plan = cut_trapezoid(request, config_);
+      refine(request, plan, 0);
+    }
   } else {
     constexpr std::array<Lead, 11> kLeads{{{0.25, 1.0},
                                            {0.1, 0.5},
@@ -61,7 +69,7 @@ Result<Solution> TrajectoryOptimizer::Method::scale(const Request& request) {
                                            {0.01, 1.0}}};
     for (const Lead& lead : kLeads) {
       plan = cut_trapezoid(request, config_, lead);
-      refine(request, plan);
+      refine(request, plan, config_.refinement_passes);
       if (best_) break;
     }
     if (!best_) try_longer(request, plan);
@@ -71,38 +79,41 @@ Result<Solution> TrajectoryOptimizer::Method::scale(const Request& request) {
 }
 
 // Design A with refinement B of docs/trajectories.md: solve, balance the pieces, solve again.
-void TrajectoryOptimizer::Method::refine(const Request& request, Plan& plan) {
+void TrajectoryOptimizer::Method::refine(const Request& request, Plan& plan, int refinements) {
   const bool rests = request.rests();
-  const int passes = 1 + config_.refinement_passes + (rests ? 0 : 4);
+  const int passes = 1 + refinements + (rests ? 0 : 4);
   double reach_m = corner_reach_m(plan, request.limits);
   for (int pass = 0; pass < passes; ++pass) {
     const double slack = rests ? 0.0 : kEndSlack[std::min<std::size_t>(std::size_t(pass), 4)];
-    const double gap = pass < config_.refinement_passes ? kCoarseGap : kFineGap;
+    const bool coarse = pass < refinements;
     double kappa = 1.0;
-    if (!solve_scale(request, plan, reach_m, gap, slack, kappa)) return;
+    if (!solve_scale(request, plan, reach_m, coarse, slack, kappa)) return;
+    if (coarse) {
+      balance(request, plan);
+      if (pass == 0) reach_m *= kNarrow;
+      continue;
+    }
     consider(request, plan);
     if (outside_ && reach_m < kAllFaces) {  // through a face that was left out
       reach_m = kAllFaces;
-      if (!solve_scale(request, plan, reach_m, gap, slack, kappa)) return;
+      if (!solve_scale(request, plan, reach_m, coarse, slack, kappa)) return;
       consider(request, plan);
     }
     const bool certified = best_.has_value();
     // A moving end was linearised at kappa = 1: done when it has come to be so.
     const bool settled = certified && (rests || std::abs(kappa - 1.0) < 1e-3);
-    if (pass >= config_.refinement_passes && settled) return;
-    if (pass < config_.refinement_passes) balance(request, plan);
+    if (settled) return;
   }
 }
 
 // Pieces that stay below both limits get less time.
 void TrajectoryOptimizer::Method::balance(const Request& request, Plan& plan) const {
-  constexpr double kExponent = 1.0;
   for (std::size_t k = 0; k < plan.durations_s.size(); ++k) {
     const auto piece =
         BezierPiece::between(plan.joints[k], plan.joints[k + 1], plan.durations_s[k]);
     const Usage used = usage(piece, request.limits);
     const double u = std::max(used.speed, std::sqrt(used.acceleration));
-    plan.durations_s[k] *= std::pow(std::clamp(u, 0.3, 1.0), kExponent);
+    plan.durations_s[k] *= std::pow(std::clamp(u, 0.3, 1.0), kBalance);
   }
 }
 
@@ -135,16 +146,16 @@ void TrajectoryOptimizer::Method::try_longer(const Request& request, const Plan&
 }
 
 bool TrajectoryOptimizer::Method::solve_scale(const Request& request, Plan& plan, double reach_m,
-                                              double gap, double end_slack, double& kappa) {
+                                              bool coarse, double end_slack, double& kappa) {
   if (!make_problem(request, plan, true, config_.time_weight, reach_m, problem_, units_, end_slack))
     return false;
   last_ = solver_.solve(
       problem_, {.max_iterations = config_.max_iterations,
-                 .gap = gap,
-                 .feasibility = 1e-8,
+                 .gap = coarse ? kCoarseGap : kFineGap,
+                 .feasibility = coarse ? 1e-2 : 1e-8,
                  // From rest to rest the durations are set to what the limits need afterwards.
-                 .limit_feasibility = request.rests() ? 1e-3 : 1e-8,
-                 .dual_feasibility = 1e-3});
+                 .limit_feasibility = coarse ? 3e-2 : request.rests() ? 1e-3 : 1e-8,
+                 .dual_feasibility = coarse ? 0.1 : 1e-3});
   iterations_ += last_.iterations;
   ++solves_;
   if (last_.status != SplineSolver::Status::solved || !(last_.eta > 0.0)) return false;

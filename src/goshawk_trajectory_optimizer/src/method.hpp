@@ -21,11 +21,11 @@ class TrajectoryOptimizer::Method {
   Result<Solution> fixed(const Request& request);
   Result<Solution> thesis(const Request& request);
 
-  void refine(const Request& request, Plan& plan);
+  void refine(const Request& request, Plan& plan, int refinements);
   /// Time and shape together, once: the plan becomes the solution and kappa its time scale.
-  /// @param gap relative, where to stop
-  bool solve_scale(const Request& request, Plan& plan, double reach_m, double gap, double end_slack,
-                   double& kappa);
+  /// @param coarse good enough to see which pieces need more time, not to fly
+  bool solve_scale(const Request& request, Plan& plan, double reach_m, bool coarse,
+                   double end_slack, double& kappa);
   /// Least jerk with the plan's durations.
   bool solve_fixed(const Request& request, Plan& plan);
   /// Fixed durations, longer and longer, until a plan is certified.

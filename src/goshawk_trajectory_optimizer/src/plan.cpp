@@ -12,6 +12,9 @@ namespace {
 constexpr double kLeastLength = 1e-6;  // [m] of a path, for the estimate of its duration
 constexpr double kShortest = 0.01;     // of a mean piece: shorter ones cost accuracy
 
+// In longest pieces: the sooner the first ends, the sooner the acceleration is there.
+constexpr double kFirstFromRest = 0.4;
+
 constexpr double kCorner = 0.6;  // of v^2 / a: how far a corner is cut, generously
 
 double speed_along(const FlatState& state, const Vec3& from, const Vec3& to) {
@@ -60,13 +63,14 @@ Plan cut_trapezoid(const Request& request, const Config& config, const Lead& lea
       plan.reference_s,
       rest_to_rest_duration_s(kLeastLength, request.limits.v_max_m_s, request.limits.a_max_m_s2));
   const double longest = std::min(config.piece_duration_s, plan.reference_s / config.min_pieces);
+  const auto first = [&](const FlatState& end) {
+    return is_moving(end) ? lead.first_piece : kFirstFromRest;
+  };
   // Of a piece that begins or ends at t.
   const auto cap = [&](double t) {
     double most = longest;
-    if (is_moving(request.start)) most = std::min(most, std::max(lead.first_piece * longest, t));
-    if (is_moving(request.goal)) {
-      most = std::min(most, std::max(lead.first_piece * longest, 0.5 * (plan.reference_s - t)));
-    }
+    most = std::min(most, std::max(first(request.start) * longest, t));
+    most = std::min(most, std::max(first(request.goal) * longest, 0.5 * (plan.reference_s - t)));
     return most;
   };
   double begin = 0.0;

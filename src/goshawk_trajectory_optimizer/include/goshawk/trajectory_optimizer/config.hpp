@@ -10,9 +10,9 @@ namespace goshawk::trajectory_optimizer {
 
 struct Config {
   std::string method = "scale";
-  double piece_duration_s = 0.4;  // [s]
+  double piece_duration_s = 0.45;  // [s]
   int min_pieces = 8;
-  int refinement_passes = 0;
+  int refinement_passes = 2;
   double time_weight = 100.0;
   int max_iterations = 60;
   double max_stretch = 20.0;
