@@ -66,8 +66,10 @@ bool SplineSolver::needs_more_time(const SplineProblem& problem, const Settings&
   memory_->load(relaxed_);
   memory_->start();
   Settings coarse = settings;
-  coarse.gap = 1e-4;
-  coarse.dual_feasibility = 1e-6;
+  coarse.gap = 1e-3;
+  coarse.feasibility = 1e-6;
+  coarse.limit_feasibility = 1e-3;
+  coarse.dual_feasibility = 1e-4;
   Outcome relaxed;
   iterate(coarse, relaxed);
   out.iterations += relaxed.iterations;
