@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <limits>
 
+#include "usage.hpp"
+
 namespace goshawk::trajectory_optimizer {
 namespace {
 
@@ -17,21 +19,6 @@ constexpr double kBalance = 1.8;
 constexpr double kCoarseGap = 0.1;  // relative, of all passes but the last
 constexpr double kFineGap = 1e-3;
 constexpr std::array<double, 5> kEndSlack{2e-2, 2e-3, 2e-5, 0.0, 0.0};  // pass by pass
-
-// The largest speed and acceleration of a spline's hull, in units of the limits, piece by piece.
-struct Usage {
-  double speed = 0.0;
-  double acceleration = 0.0;
-};
-
-Usage usage(const BezierPiece& piece, const Limits& limits) {
-  const auto largest = [&](const auto& points) {
-    return limits.norm == LimitNorm::euclidean ? points.colwise().norm().maxCoeff()
-                                               : points.cwiseAbs().maxCoeff();
-  };
-  return {largest(piece.velocity_points()) / limits.v_max_m_s,
-          largest(piece.acceleration_points()) / limits.a_max_m_s2};
-}
 
 void stretch_durations(Plan& plan, double factor) {
   for (double& duration : plan.durations_s) duration *= factor;
@@ -111,8 +98,7 @@ void TrajectoryOptimizer::Method::balance(const Request& request, Plan& plan) co
   for (std::size_t k = 0; k < plan.durations_s.size(); ++k) {
     const auto piece =
         BezierPiece::between(plan.joints[k], plan.joints[k + 1], plan.durations_s[k]);
-    const Usage used = usage(piece, request.limits);
-    const double u = std::max(used.speed, std::sqrt(used.acceleration));
+    const double u = time_factor(usage_of(piece, request.limits));
     plan.durations_s[k] *= std::pow(std::clamp(u, 0.3, 1.0), kBalance);
   }
 }
@@ -166,8 +152,7 @@ bool TrajectoryOptimizer::Method::solve_scale(const Request& request, Plan& plan
     for (std::size_t k = 0; k < plan.durations_s.size(); ++k) {
       const auto piece =
           BezierPiece::between(plan.joints[k], plan.joints[k + 1], plan.durations_s[k]);
-      const Usage used = usage(piece, request.limits);
-      exact = std::max({exact, used.speed, std::sqrt(used.acceleration)});
+      exact = std::max(exact, time_factor(usage_of(piece, request.limits)));
     }
     exact *= 1.0 + 1e-12;
     stretch_durations(plan, exact);
