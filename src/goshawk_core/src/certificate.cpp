@@ -62,8 +62,8 @@ void certify_derivatives(const BezierPiece& piece, double begin_s, const Limits&
     c.velocity_m_s = c.acceleration_m_s2 = c.jerk_m_s3 = kNaN;
     return;
   }
-  const double v = largest_use(piece.velocity_points(),
-                               [&](const Vec3& p) { return limits.speed_usage(p); });
+  const double v =
+      largest_use(piece.velocity_points(), [&](const Vec3& p) { return limits.speed_usage(p); });
   const double a = largest_use(piece.acceleration_points(),
                                [&](const Vec3& p) { return limits.acceleration_usage(p); });
   const bool early = begin_s < allowance.until_s;

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "goshawk/trajectory_optimizer/rivals.hpp"
 #include "usage.hpp"
 
 namespace goshawk::trajectory_optimizer {
@@ -30,6 +31,7 @@ Result<Solution> TrajectoryOptimizer::Method::answer(const Request& request) {
   best_.reset();
   iterations_ = solves_ = 0;
   if (config_.method == "thesis") return thesis(request);
+  if (config_.method == "minimum_snap" || config_.method == "polynomial") return rival(request);
   return config_.method == "fixed" ? fixed(request) : scale(request);
 }
 
@@ -121,6 +123,44 @@ Result<Solution> TrajectoryOptimizer::Method::thesis(const Request& request) {
   return failure(thesis);
 }
 
+// The thesis' Ref. [40] and Ref. [42] in the corridor's clothes: what leaves it is not handed out.
+Result<Solution> TrajectoryOptimizer::Method::rival(const Request& request) {
+  const auto& polytopes = request.corridor.polytopes;
+  Trajectory trajectory;
+  if (config_.method == "minimum_snap") {
+    auto answer =
+        minimum_snap(request.corridor.waypoints_map, request.start, request.goal, request.limits);
+    if (!answer) return answer.error();
+    trajectory = *std::move(answer);
+    solves_ = 1;
+  } else {
+    auto answer =
+        rechecked_polynomial(request.corridor.waypoints_map, request.start, request.goal,
+                             request.limits, [&](const BezierPiece& piece) {
+                               const Polytope& home = polytopes[std::size_t(piece.polytope)];
+                               for (int j = 0; j < 6; ++j) {
+                                 if (!(home.violation(piece.control_points.col(j)) <= 1e-7))
+                                   return false;
+                               }
+                               return true;
+                             });
+    if (!answer) return answer.error();
+    trajectory = std::move(answer->trajectory);
+    solves_ = answer->plans;
+  }
+  const Certificate certificate =
+      certify(trajectory, polytopes, request.limits, request.start, request.goal);
+  if (!certificate.holds()) {
+    return fail(ErrorCode::not_certified, "the polynomial breaks its promises (" +
+                                              certificate.worst() +
+                                              "), as this method may: use method scale");
+  }
+  const int pieces = int(trajectory.pieces.size());
+  const double jerk_cost = trajectory.jerk_cost();
+  best_ = Solution{std::move(trajectory), certificate, 0, 0, pieces, jerk_cost};
+  return finish();
+}
+
 void TrajectoryOptimizer::Method::try_longer(const Request& request, const Plan& plan) {
   double factor = 1.0;
   for (double step = 1e-3; factor <= config_.max_stretch; step = std::min(2.0 * step, 0.2)) {
@@ -140,7 +180,9 @@ bool TrajectoryOptimizer::Method::solve_scale(const Request& request, Plan& plan
                  .gap = coarse ? kCoarseGap : kFineGap,
                  .feasibility = coarse ? 1e-2 : 1e-8,
                  // From rest to rest the durations are set to what the limits need afterwards.
-                 .limit_feasibility = coarse ? 3e-2 : request.rests() ? 1e-3 : 1e-8,
+                 .limit_feasibility = coarse            ? 3e-2
+                                      : request.rests() ? 1e-3
+                                                        : 1e-8,
                  .dual_feasibility = coarse ? 0.1 : 1e-3});
   iterations_ += last_.iterations;
   ++solves_;

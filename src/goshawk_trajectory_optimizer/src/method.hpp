@@ -20,6 +20,7 @@ class TrajectoryOptimizer::Method {
   Result<Solution> scale(const Request& request);
   Result<Solution> fixed(const Request& request);
   Result<Solution> thesis(const Request& request);
+  Result<Solution> rival(const Request& request);
 
   void refine(const Request& request, Plan& plan, int refinements);
   /// Time and shape together, once: the plan becomes the solution and kappa its time scale.

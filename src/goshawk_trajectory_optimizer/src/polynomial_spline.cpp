@@ -85,9 +85,9 @@ Result<PolynomialSpline> PolynomialSpline::through(std::span<const Vec3> waypoin
                                                    const FlatState& start, const FlatState& goal,
                                                    Smoothness smoothness) {
   if (waypoints.size() < 2 || durations.size() + 1 != waypoints.size()) {
-    return fail(ErrorCode::invalid_input,
-                std::to_string(waypoints.size()) + " waypoints and " +
-                    std::to_string(durations.size()) + " durations: n + 1 and n are needed");
+    return fail(ErrorCode::invalid_input, std::to_string(waypoints.size()) + " waypoints and " +
+                                              std::to_string(durations.size()) +
+                                              " durations: n + 1 and n are needed");
   }
   for (const double T : durations) {
     if (!(std::isfinite(T) && T > 0.0)) {

@@ -31,8 +31,8 @@ std::vector<double> durations_of(const Route& route, const Limits& limits) {
   std::vector<double> durations;
   for (std::size_t k = 0; k + 1 < route.waypoints.size(); ++k) {
     const double length = (route.waypoints[k + 1] - route.waypoints[k]).norm();
-    durations.push_back(rest_to_rest_duration_s(std::max(length, kLeastLength_m),
-                                                limits.v_max_m_s, limits.a_max_m_s2));
+    durations.push_back(rest_to_rest_duration_s(std::max(length, kLeastLength_m), limits.v_max_m_s,
+                                                limits.a_max_m_s2));
   }
   return durations;
 }

@@ -228,7 +228,8 @@ void SplineSolver::Memory::start() {
     spline_kernels().linearise(state);
   }
   state.degree = rows;
-  const double mu = (state.scale ? kFirstGap : kFirstGapFixed) * std::max(state.objective, 1e-6) / rows;
+  const double mu =
+      (state.scale ? kFirstGap : kFirstGapFixed) * std::max(state.objective, 1e-6) / rows;
   each_row([&](auto& row) {
     for (int j = 0; j < 4; ++j) {
       row.s[j] = std::max(1.0 - row.residual[j], kStartMargin);

@@ -9,11 +9,11 @@ namespace goshawk::trajectory_optimizer {
 /// Four faces of one face point. A face that only fills up the four has no normal.
 struct FaceLanes {
   Lanes nx, ny, nz, offset;
-  Lanes s, z;        // slack and multiplier
-  Lanes residual;    // n.y - offset + s
+  Lanes s, z;               // slack and multiplier
+  Lanes residual;           // n.y - offset + s
   Lanes inverse_s, weight;  // 1 / s, z / s
   Lanes ds, dz;
-  Lanes target;      // what s z is to become
+  Lanes target;  // what s z is to become
 };
 
 /// A control point y = p + beta v + gamma a of one joint and its faces.
@@ -57,8 +57,8 @@ struct PieceSums {
 /// A block column of the factors L D L': rows 0..8 the diagonal block, row 9 the border, rows
 /// 12..20 the block below, row 21 the border again (what is below then has the next panel's form).
 struct Panel {
-  Lanes u[9][6];         // columns of L D
-  Lanes below[9][3];     // columns of L, rows 12..23
+  Lanes u[9][6];           // columns of L D
+  Lanes below[9][3];       // columns of L, rows 12..23
   Lanes transposed[9][3];  // row j of L's diagonal block
   Lanes inverse_d[3];
 };
@@ -68,13 +68,13 @@ struct SplineState {
   int last = 0;  // index of the last joint = number of pieces
   bool scale = true;
   bool ends_move = false;
-  int rows = 1;                 // of each limit point
+  int rows = 1;                       // of each limit point
   double weights[kMostRows][3] = {};  // of the components of y in each row's norm
   int face_points = 0;
   double degree = 1.0;  // number of products s z
   double time_weight = 0.0;
 
-  Lanes* x = nullptr;   // 3 a joint: p, v, a
+  Lanes* x = nullptr;  // 3 a joint: p, v, a
   Lanes* dx = nullptr;
   const Lanes* start_rate = nullptr;
   const Lanes* goal_rate = nullptr;
@@ -95,8 +95,8 @@ struct SplineState {
   double multiplier_residual = 0.0;  // sum of |G'z| over the unknowns
   double proof = 0.0;                // z' (f + s)
   double face_violation = 0.0, limit_violation = 0.0;
-  double reach = 1.0;                // step of the predictor to the boundary, at most 1
-  double product = 0.0;              // ds'dz of the predictor
+  double reach = 1.0;    // step of the predictor to the boundary, at most 1
+  double product = 0.0;  // ds'dz of the predictor
 };
 
 /// The steps of an iteration, each a pass over the state.

@@ -50,6 +50,8 @@ Result<Solution> TrajectoryOptimizer::optimise(const Corridor& corridor, const F
 std::string_view TrajectoryOptimizer::implementation() const {
   const std::string& method = method_->config().method;
   if (method == "thesis") return "bezier-thesis";
+  if (method == "minimum_snap") return "polynomial-minimum-snap";
+  if (method == "polynomial") return "polynomial-rechecked";
   return method == "fixed" ? "bezier-fixed" : "bezier-scale";
 }
 

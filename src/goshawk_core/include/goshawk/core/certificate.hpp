@@ -54,9 +54,9 @@ struct Certificate {
   double joint_position_m = 0.0;   // jumps between pieces
   double joint_velocity_m_s = 0.0;
   double joint_acceleration_m_s2 = 0.0;
-  double start_m = 0.0;      // largest of position, velocity, acceleration error
-  double goal_m = 0.0;       // likewise at the end
-  double jerk_m_s3 = 0.0;    // jerk control points above j_max; 0 where there is no such limit
+  double start_m = 0.0;    // largest of position, velocity, acceleration error
+  double goal_m = 0.0;     // likewise at the end
+  double jerk_m_s3 = 0.0;  // jerk control points above j_max; 0 where there is no such limit
   // Not violations, but what the start's allowance was used for; 0 where there is none.
   double start_excess_m_s = 0.0;   // largest velocity control point above v_max
   double start_excess_m_s2 = 0.0;  // largest acceleration control point above a_max

@@ -24,8 +24,11 @@ void describe(Self& c, Visitor&& visit) {
   visit("method", c.method, "",
         "scale: durations and shape together, near time-optimal; fixed: minimum jerk with the "
         "durations of a trapezoid over the whole path, stretched until feasible; thesis: one "
-        "quintic a segment, trapezoid durations, limits per axis, never stretched",
-        OneOf{{"scale", "fixed", "thesis"}});
+        "quintic a segment, trapezoid durations, limits per axis, never stretched; minimum_snap "
+        "(thesis Ref. [40]): a polynomial through the waypoints that does not know the corridor; "
+        "polynomial (Ref. [42]): minimum jerk through the waypoints, planned again with more "
+        "waypoints where it leaves the corridor",
+        OneOf{{"scale", "fixed", "thesis", "minimum_snap", "polynomial"}});
   visit("piece_duration_s", c.piece_duration_s, "s",
         "longest piece of the first cut: shorter pieces fly faster and cost more to compute "
         "(not used by thesis)",

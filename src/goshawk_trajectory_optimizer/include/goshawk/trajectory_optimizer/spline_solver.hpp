@@ -18,10 +18,10 @@ class SplineSolver {
  public:
   struct Settings {
     int max_iterations = 60;
-    double gap = 1e-8;               // relative duality gap
-    double feasibility = 1e-9;       // largest violation of a face
-    double limit_feasibility = 1e-9; // of a limit, relative and squared
-    double dual_feasibility = 1e-7;  // dual residual, relative
+    double gap = 1e-8;                // relative duality gap
+    double feasibility = 1e-9;        // largest violation of a face
+    double limit_feasibility = 1e-9;  // of a limit, relative and squared
+    double dual_feasibility = 1e-7;   // dual residual, relative
     /// Asked before each iteration; true ends the solve. Empty: never.
     const std::function<bool()>* stop = nullptr;
   };
