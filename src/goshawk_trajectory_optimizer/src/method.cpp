@@ -71,7 +71,8 @@ Result<Solution> TrajectoryOptimizer::Method::scale(const Request& request) {
 void TrajectoryOptimizer::Method::refine(const Request& request, Plan& plan, int refinements) {
   const bool rests = request.rests();
   const int passes = 1 + refinements + (rests ? 0 : 4);
-  double reach_m = corner_reach_m(plan, request.limits);
+  const double first_reach_m = corner_reach_m(plan, request.limits);
+  double reach_m = first_reach_m;
   for (int pass = 0; pass < passes; ++pass) {
     const double slack = rests ? 0.0 : kEndSlack[std::min<std::size_t>(std::size_t(pass), 4)];
     const bool coarse = pass < refinements;
@@ -79,12 +80,14 @@ void TrajectoryOptimizer::Method::refine(const Request& request, Plan& plan, int
     if (!solve_scale(request, plan, reach_m, coarse, slack, kappa)) return;
     if (coarse) {
       balance(request, plan);
-      if (pass == 0) reach_m *= kNarrow;
+      reach_m = kNarrow * first_reach_m;
       continue;
     }
     consider(request, plan);
-    if (outside_ && reach_m < kAllFaces) {  // through a face that was left out
-      reach_m = kAllFaces;
+    // Through a face that was left out: look farther, and then at all of them.
+    for (const double farther : {first_reach_m, kAllFaces}) {
+      if (!outside_ || reach_m >= farther) continue;
+      reach_m = farther;
       if (!solve_scale(request, plan, reach_m, coarse, slack, kappa)) return;
       consider(request, plan);
     }
