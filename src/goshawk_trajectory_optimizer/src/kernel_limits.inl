@@ -64,16 +64,18 @@ struct LimitTotals {
 };
 
 template <bool Over>
-GOSHAWK_INLINE void linearise_limit(SplineState& w, int k, LimitLanes& l, LimitTotals& total) {
+GOSHAWK_INLINE void linearise_limit(SplineState& w, const LimitSet& set, int k,
+                                    LimitTotals& total) {
+  LimitLanes& l = set.lanes[k];
   points_of(l, w.x + 3 * k, l.y);
   l.e = l.e1 * w.eta + l.e0;
   l.inverse_e = 1.0 / l.e;
   const Lanes g = Over ? l.inverse_e : all(1.0);
   LimitSums to;
-  for (int r = 0; r < w.rows; ++r) {
+  for (int r = 0; r < set.rows; ++r) {
     auto& row = l.row[r];
-    const Lanes wy[3] = {w.weights[r][0] * l.y[0], w.weights[r][1] * l.y[1],
-                         w.weights[r][2] * l.y[2]};
+    const Lanes wy[3] = {set.weights[r][0] * l.y[0], set.weights[r][1] * l.y[1],
+                         set.weights[r][2] * l.y[2]};
     const Lanes q = wy[0] * l.y[0] + wy[1] * l.y[1] + wy[2] * l.y[2];
     const Lanes over = Over ? q * l.inverse_e * l.inverse_e : Lanes{};
     row.residual = q * g - l.e + row.s;
@@ -99,20 +101,20 @@ GOSHAWK_INLINE void linearise_limit(SplineState& w, int k, LimitLanes& l, LimitT
       if (Over) to.border[c] -= row.z * G[c] * l.inverse_e * l.e1;
     }
     const Lanes bend = row.z * twice;
-    to.w[0] += wG[0] * G[0] + bend * w.weights[r][0];
+    to.w[0] += wG[0] * G[0] + bend * set.weights[r][0];
     to.w[1] += wG[0] * G[1];
     to.w[2] += wG[0] * G[2];
-    to.w[3] += wG[1] * G[1] + bend * w.weights[r][1];
+    to.w[3] += wG[1] * G[1] + bend * set.weights[r][1];
     to.w[4] += wG[1] * G[2];
-    to.w[5] += wG[2] * G[2] + bend * w.weights[r][2];
+    to.w[5] += wG[2] * G[2] + bend * set.weights[r][2];
   }
   scatter(l, to, w.scale, w.joints[k], w.joints[k + 1], w.pieces[k]);
 }
 
 template <bool Over>
-void linearise_limits(SplineState& w, LimitLanes* limits) {
+void linearise_limits(SplineState& w, const LimitSet& set) {
   LimitTotals total;
-  for (int k = 0; k < w.last; ++k) linearise_limit<Over>(w, k, limits[k], total);
+  for (int k = 0; k < w.last; ++k) linearise_limit<Over>(w, set, k, total);
   w.gap += sum(total.gap);
   w.proof += sum(total.proof);
   w.primal_residual = larger(w.primal_residual, largest(total.worst));
@@ -127,29 +129,29 @@ struct Along {
   Lanes slope, bend;
 };
 template <bool Over>
-GOSHAWK_INLINE Along along(const SplineState& w, const LimitLanes& l, int r, const Lanes* dy,
-                           Lanes de) {
+GOSHAWK_INLINE Along along(const SplineState& w, const LimitSet& set, const LimitLanes& l, int r,
+                           const Lanes* dy, Lanes de) {
   const Lanes g = Over ? l.inverse_e : all(1.0);
   Along a{l.row[r].slope_e * w.deta, Lanes{}};
   for (int c = 0; c < 3; ++c) {
     const Lanes v = Over ? dy[c] - l.y[c] * de * l.inverse_e : dy[c];
-    a.slope += 2.0 * g * w.weights[r][c] * l.y[c] * dy[c];
-    a.bend += g * w.weights[r][c] * v * v;
+    a.slope += 2.0 * g * set.weights[r][c] * l.y[c] * dy[c];
+    a.bend += g * set.weights[r][c] * v * v;
   }
   return a;
 }
 
 template <bool Over>
-double predict_limits(SplineState& w, LimitLanes* limits) {
+double predict_limits(SplineState& w, const LimitSet& set) {
   Lanes worst = {}, product = {};
   for (int k = 0; k < w.last; ++k) {
-    LimitLanes& l = limits[k];
+    LimitLanes& l = set.lanes[k];
     Lanes dy[3];
     points_of(l, w.dx + 3 * k, dy);
     const Lanes de = l.e1 * w.deta;
-    for (int r = 0; r < w.rows; ++r) {
+    for (int r = 0; r < set.rows; ++r) {
       auto& row = l.row[r];
-      const Along a = along<Over>(w, l, r, dy, de);
+      const Along a = along<Over>(w, set, l, r, dy, de);
       row.ds = -row.residual - a.slope;
       row.dz = -row.z - row.weight * row.ds;
       const Lanes ratio = row.ds * row.inverse_s;
@@ -163,23 +165,23 @@ double predict_limits(SplineState& w, LimitLanes* limits) {
 }
 
 template <bool Over>
-void pull_limits(SplineState& w, LimitLanes* limits, double mu) {
+void pull_limits(SplineState& w, const LimitSet& set, double mu) {
   Lanes pull_eta = {};
   for (int k = 0; k < w.last; ++k) {
-    LimitLanes& l = limits[k];
+    LimitLanes& l = set.lanes[k];
     const Lanes g = Over ? l.inverse_e : all(1.0);
     Lanes pull[3] = {};
     Lanes dy[3];
     points_of(l, w.dx + 3 * k, dy);
     const Lanes de = l.e1 * w.deta;
-    for (int r = 0; r < w.rows; ++r) {
+    for (int r = 0; r < set.rows; ++r) {
       auto& row = l.row[r];
-      const Along a = along<Over>(w, l, r, dy, de);
+      const Along a = along<Over>(w, set, l, r, dy, de);
       row.residual += w.reach * w.reach * a.bend;  // the predictor's second order
       row.target = (mu - row.target) * row.inverse_s;
       const Lanes c = row.target + row.weight * row.residual;
       pull_eta += c * row.slope_e;
-      for (int i = 0; i < 3; ++i) pull[i] += c * (2.0 * g * w.weights[r][i] * l.y[i]);
+      for (int i = 0; i < 3; ++i) pull[i] += c * (2.0 * g * set.weights[r][i] * l.y[i]);
     }
     const auto* m = reinterpret_cast<const double(*)[4]>(l.map);
     scatter_vector(m, pull, w.joints[k].pull, w.joints[k + 1].pull, 1);
@@ -188,17 +190,17 @@ void pull_limits(SplineState& w, LimitLanes* limits, double mu) {
 }
 
 template <bool Over>
-double finish_limits(SplineState& w, LimitLanes* limits) {
+double finish_limits(SplineState& w, const LimitSet& set) {
   Lanes worst = {};
   for (int k = 0; k < w.last; ++k) {
-    LimitLanes& l = limits[k];
+    LimitLanes& l = set.lanes[k];
     Lanes dy[3];
     points_of(l, w.dx + 3 * k, dy);
     const Lanes de = l.e1 * w.deta;
     worst = larger(worst, -de * l.inverse_e);  // e stays above zero
-    for (int r = 0; r < w.rows; ++r) {
+    for (int r = 0; r < set.rows; ++r) {
       auto& row = l.row[r];
-      const Along a = along<Over>(w, l, r, dy, de);
+      const Along a = along<Over>(w, set, l, r, dy, de);
       row.ds = -row.residual - a.slope;
       row.dz = row.target - row.z - row.weight * row.ds;
       worst = larger(worst, larger(-row.ds * row.inverse_s, -row.dz / row.z));
@@ -207,10 +209,10 @@ double finish_limits(SplineState& w, LimitLanes* limits) {
   return largest(worst);
 }
 
-void apply_limits(SplineState& w, LimitLanes* limits, double step) {
+void apply_limits(SplineState& w, const LimitSet& set, double step) {
   for (int k = 0; k < w.last; ++k) {
-    for (int r = 0; r < w.rows; ++r) {
-      auto& row = limits[k].row[r];
+    for (int r = 0; r < set.rows; ++r) {
+      auto& row = set.lanes[k].row[r];
       row.s += step * row.ds;
       row.z += step * row.dz;
     }

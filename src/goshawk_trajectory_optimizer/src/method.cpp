@@ -19,6 +19,9 @@ constexpr double kNarrow = 0.1;
 constexpr double kBalance = 1.8;
 constexpr double kCoarseGap = 0.1;  // relative, of all passes but the last
 constexpr double kFineGap = 1e-3;
+// The squared duration beside the mean squared jerk, each in units of the trapezoid's: enough for
+// nearly the least time, not so much that the jerk is left to chance.
+constexpr double kTimeWeight = 100.0;
 constexpr std::array<double, 5> kEndSlack{2e-2, 2e-3, 2e-5, 0.0, 0.0};  // pass by pass
 
 void stretch_durations(Plan& plan, double factor) {
@@ -28,8 +31,20 @@ void stretch_durations(Plan& plan, double factor) {
 }  // namespace
 
 Result<Solution> TrajectoryOptimizer::Method::answer(const Request& request) {
-  best_.reset();
   iterations_ = solves_ = 0;
+  auto soon = soonest(request);
+  if (!soon) return soon;
+  if (request.duration_s > 0.0) return arrive(request, request.duration_s, *std::move(soon));
+  if (config_.extra_time > 0.0) {
+    const double duration_s = (1.0 + config_.extra_time) * soon->trajectory.duration_s();
+    return arrive(request, duration_s, *std::move(soon));
+  }
+  return soon;
+}
+
+Result<Solution> TrajectoryOptimizer::Method::soonest(const Request& request) {
+  best_.reset();
+  last_ = {};
   if (config_.method == "thesis") return thesis(request);
   if (config_.method == "minimum_snap" || config_.method == "polynomial") return rival(request);
   return config_.method == "fixed" ? fixed(request) : scale(request);
@@ -40,31 +55,42 @@ Result<Solution> TrajectoryOptimizer::Method::scale(const Request& request) {
   if (plan.stays) return fixed(request);
   if (request.rests()) {
     refine(request, plan, config_.refinement_passes);
-    if (!best_ && config_.refinement_passes > 0) {  // durations too uneven to compute with
-      plan = cut_trapezoid(request, config_);
+    if (!best_ && config_.refinement_passes > 0 && !stopped()) {
+      plan = cut_trapezoid(request, config_);  // durations too uneven to compute with
       refine(request, plan, 0);
     }
   } else {
-    constexpr std::array<Lead, 11> kLeads{{{0.25, 1.0},
-                                           {0.1, 0.5},
-                                           {0.1, 1.6},
-                                           {0.02, 1.0},
-                                           {0.05, 0.25},
-                                           {0.05, 0.7},
-                                           {0.03, 0.12},
-                                           {0.02, 0.05},
-                                           {0.05, 3.0},
-                                           {0.01, 0.02},
-                                           {0.01, 1.0}}};
-    for (const Lead& lead : kLeads) {
-      plan = cut_trapezoid(request, config_, lead);
-      refine(request, plan, config_.refinement_passes);
-      if (best_) break;
-    }
-    if (!best_) try_longer(request, plan);
+    scale_moving(request, plan);
+    if (!best_ && !stopped()) try_longer(request, plan);
   }
   if (best_) return finish();
   return failure(request);
+}
+
+void TrajectoryOptimizer::Method::scale_moving(const Request& request, Plan& plan) {
+  constexpr std::array<Lead, 11> kLeads{{{0.25, 1.0},
+                                         {0.1, 0.5},
+                                         {0.1, 1.6},
+                                         {0.02, 1.0},
+                                         {0.05, 0.25},
+                                         {0.05, 0.7},
+                                         {0.03, 0.12},
+                                         {0.02, 0.05},
+                                         {0.05, 3.0},
+                                         {0.01, 0.02},
+                                         {0.01, 1.0}}};
+  // A start above a limit: as little time above it as there is an answer for.
+  constexpr std::array<double, 4> kBraking{0.4, 0.6, 0.8, 0.99};
+  const bool above = StartAllowance::of(request.start, request.limits).until_s > 0.0;
+  for (const double braking : kBraking) {
+    for (Lead lead : kLeads) {
+      lead.braking = braking;
+      plan = cut_trapezoid(request, config_, lead);
+      refine(request, plan, config_.refinement_passes);
+      if (best_ || stopped()) return;
+    }
+    if (!above) return;
+  }
 }
 
 // Design A with refinement B of docs/trajectories.md: solve, balance the pieces, solve again.
@@ -119,7 +145,8 @@ Result<Solution> TrajectoryOptimizer::Method::fixed(const Request& request) {
 Result<Solution> TrajectoryOptimizer::Method::thesis(const Request& request) {
   Limits per_axis = request.limits;
   per_axis.norm = LimitNorm::per_axis;
-  const Request thesis{request.corridor, request.start, request.goal, per_axis};
+  const Request thesis{request.corridor, request.start,      request.goal,
+                       per_axis,         request.duration_s, request.out_of_time};
   Plan plan = thesis_plan(thesis);
   if (solve_fixed(thesis, plan)) consider(thesis, plan);
   if (best_) return finish();
@@ -170,13 +197,14 @@ void TrajectoryOptimizer::Method::try_longer(const Request& request, const Plan&
     Plan longer = plan;
     stretch_durations(longer, factor);
     if (solve_fixed(request, longer) && consider(request, longer)) return;
+    if (stopped()) return;
     factor *= 1.0 + step;
   }
 }
 
 bool TrajectoryOptimizer::Method::solve_scale(const Request& request, Plan& plan, double reach_m,
                                               bool coarse, double end_slack, double& kappa) {
-  if (!make_problem(request, plan, true, config_.time_weight, reach_m, problem_, units_, end_slack))
+  if (!make_problem(request, plan, true, kTimeWeight, reach_m, problem_, units_, end_slack))
     return false;
   last_ = solver_.solve(
       problem_, {.max_iterations = config_.max_iterations,
@@ -186,7 +214,8 @@ bool TrajectoryOptimizer::Method::solve_scale(const Request& request, Plan& plan
                  .limit_feasibility = coarse            ? 3e-2
                                       : request.rests() ? 1e-3
                                                         : 1e-8,
-                 .dual_feasibility = coarse ? 0.1 : 1e-3});
+                 .dual_feasibility = coarse ? 0.1 : 1e-3,
+                 .stop = request.out_of_time});
   iterations_ += last_.iterations;
   ++solves_;
   if (last_.status != SplineSolver::Status::solved || !(last_.eta > 0.0)) return false;
@@ -216,7 +245,8 @@ bool TrajectoryOptimizer::Method::solve_fixed(const Request& request, Plan& plan
     last_.status = SplineSolver::Status::infeasible;
     return false;
   }
-  last_ = solver_.solve(problem_, {config_.max_iterations, 1e-7, 1e-9, 1e-9, 1e-6});
+  last_ = solver_.solve(problem_,
+                        {config_.max_iterations, 1e-7, 1e-9, 1e-9, 1e-6, request.out_of_time});
   iterations_ += last_.iterations;
   if (last_.status != SplineSolver::Status::solved) return false;
   take_solution(request, solver_.joints(), units_, 1.0, plan);
@@ -232,10 +262,11 @@ bool TrajectoryOptimizer::Method::consider(const Request& request, const Plan& p
   if (!certificate.holds()) return false;
   const double jerk_cost = trajectory.jerk_cost();
   const double natural = natural_jerk(plan, request.limits);
-  const double cost = config_.time_weight * std::pow(plan.duration_s() / plan.reference_s, 2) +
+  const double cost = kTimeWeight * std::pow(plan.duration_s() / plan.reference_s, 2) +
                       jerk_cost / (plan.duration_s() * natural * natural);
   if (best_ && best_cost_ <= cost) return true;
   best_cost_ = cost;
+  best_plan_ = plan;
   best_ =
       Solution{std::move(trajectory), certificate, 0, 0, int(plan.durations_s.size()), jerk_cost};
   return true;
@@ -253,6 +284,11 @@ Error TrajectoryOptimizer::Method::failure(const Request& request) const {
   std::snprintf(numbers, sizeof numbers,
                 " (%d solves, %d iterations; last primal residual %.2g, gap %.2g)", solves_,
                 iterations_, last_.primal_residual, last_.gap);
+  if (stopped()) {
+    return fail(ErrorCode::deadline_exceeded,
+                "the time for optimising was over before there was an answer: allow more time" +
+                    std::string(numbers));
+  }
   if (config_.method == "thesis" && last_.status == Status::infeasible) {
     return fail(ErrorCode::trajectory_infeasible,
                 "one quintic a segment with trapezoid durations cannot stay in the corridor and "

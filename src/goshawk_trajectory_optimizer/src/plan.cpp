@@ -90,6 +90,7 @@ Plan cut_trapezoid(const Request& request, const Config& config, const Lead& lea
     begin += duration;
   }
   plan.joints.back() = request.goal;
+  plan.braking_s = lead.braking * StartAllowance::of(request.start, request.limits).until_s;
   return plan;
 }
 
@@ -197,6 +198,26 @@ double natural_jerk(const Plan& plan, const Limits& limits) {
   return limits.a_max_m_s2 / ramp_s;
 }
 
+namespace {
+
+double over_vertical(double limit, double vertical) {
+  return vertical > 0.0 ? limit / vertical : 1.0;
+}
+
+// Pieces that begin while a start above a limit is braked may be as fast as it.
+void allow_for_start(const Request& request, const Plan& plan, SplineProblem& problem) {
+  const StartAllowance allowance = StartAllowance::of(request.start, request.limits);
+  double begin = 0.0;
+  for (std::size_t k = 0; k < plan.durations_s.size(); ++k) {
+    if (begin >= std::min(plan.braking_s, allowance.until_s)) break;
+    problem.v_max[k] *= allowance.speed;
+    problem.a_max[k] *= allowance.acceleration;
+    begin += plan.durations_s[k];
+  }
+}
+
+}  // namespace
+
 bool make_problem(const Request& request, const Plan& plan, bool scale, double time_weight,
                   double reach_m, SplineProblem& problem, Units& units, double end_slack) {
   const std::size_t m = plan.durations_s.size();
@@ -219,6 +240,13 @@ bool make_problem(const Request& request, const Plan& plan, bool scale, double t
   }
   problem.v_max.assign(m, tighten);
   problem.a_max.assign(m, tighten * limits.a_max_m_s2 * units.time_s / limits.v_max_m_s);
+  if (limits.j_max_m_s3 > 0.0) {
+    problem.j_max.assign(
+        m, tighten * limits.j_max_m_s3 * units.time_s * units.time_s / limits.v_max_m_s);
+  }
+  problem.v_over_vertical = over_vertical(limits.v_max_m_s, limits.v_max_vertical_m_s);
+  problem.a_over_vertical = over_vertical(limits.a_max_m_s2, limits.a_max_vertical_m_s2);
+  allow_for_start(request, plan, problem);
   // A start or goal may lie on a limit: half of the certificate's tolerance gives it an interior.
   const auto loosen = [&](std::size_t piece) {
     problem.v_max[piece] += 0.5e-6 / limits.v_max_m_s + end_slack;

@@ -80,7 +80,7 @@ void linearise(SplineState& w) {
   linearise_faces(w);
   linearise_limits<false>(w, w.velocity);
   linearise_limits<true>(w, w.acceleration);
-  if (w.jerk_limit != nullptr) linearise_limits<true>(w, w.jerk_limit);
+  if (w.jerk_limit.lanes != nullptr) linearise_limits<true>(w, w.jerk_limit);
   measure_dual_residual(w);
 }
 
@@ -91,7 +91,7 @@ double predict(SplineState& w) {
   double worst = larger(1e-300, predict_faces(w));
   worst = larger(worst, predict_limits<false>(w, w.velocity));
   worst = larger(worst, predict_limits<true>(w, w.acceleration));
-  if (w.jerk_limit != nullptr) worst = larger(worst, predict_limits<true>(w, w.jerk_limit));
+  if (w.jerk_limit.lanes != nullptr) worst = larger(worst, predict_limits<true>(w, w.jerk_limit));
   w.reach = worst > 1.0 ? 1.0 / worst : 1.0;
   return w.reach;
 }
@@ -104,13 +104,13 @@ double correct(SplineState& w, double mu) {
   pull_faces(w, mu);
   pull_limits<false>(w, w.velocity, mu);
   pull_limits<true>(w, w.acceleration, mu);
-  if (w.jerk_limit != nullptr) pull_limits<true>(w, w.jerk_limit, mu);
+  if (w.jerk_limit.lanes != nullptr) pull_limits<true>(w, w.jerk_limit, mu);
   load_rhs(w);
   solve(w);
   double worst = larger(1e-300, finish_faces(w));
   worst = larger(worst, finish_limits<false>(w, w.velocity));
   worst = larger(worst, finish_limits<true>(w, w.acceleration));
-  if (w.jerk_limit != nullptr) worst = larger(worst, finish_limits<true>(w, w.jerk_limit));
+  if (w.jerk_limit.lanes != nullptr) worst = larger(worst, finish_limits<true>(w, w.jerk_limit));
   return 1.0 / worst;
 }
 
@@ -120,5 +120,5 @@ void apply(SplineState& w, double step) {
   apply_faces(w, step);
   apply_limits(w, w.velocity, step);
   apply_limits(w, w.acceleration, step);
-  if (w.jerk_limit != nullptr) apply_limits(w, w.jerk_limit, step);
+  if (w.jerk_limit.lanes != nullptr) apply_limits(w, w.jerk_limit, step);
 }

@@ -93,23 +93,34 @@ void SplineSolver::Memory::load_faces(const SplineProblem& problem) {
   state.faces = faces_.data();
 }
 
-void SplineSolver::Memory::load_limits(const SplineProblem& problem) {
-  for (auto& row : state.weights) std::fill(std::begin(row), std::end(row), 0.0);
-  switch (problem.norm) {
+namespace {
+
+// @param vertical the horizontal limit over the vertical one
+void set_norm(LimitSet& set, LimitNorm norm, double vertical) {
+  for (auto& row : set.weights) std::fill(std::begin(row), std::end(row), 0.0);
+  switch (norm) {
     case LimitNorm::euclidean:
-      state.rows = 1;
-      for (double& w : state.weights[0]) w = 1.0;
+      set.rows = 1;
+      for (double& w : set.weights[0]) w = 1.0;
       break;
     case LimitNorm::per_axis:
-      state.rows = 3;
-      for (int i = 0; i < 3; ++i) state.weights[i][i] = 1.0;
+      set.rows = 3;
+      for (int i = 0; i < 3; ++i) set.weights[i][i] = 1.0;
       break;
     case LimitNorm::horizontal_vertical:
-      state.rows = 2;
-      state.weights[0][0] = state.weights[0][1] = 1.0;
-      state.weights[1][2] = 1.0;  // each limit's own: set in the map
+      set.rows = 2;
+      set.weights[0][0] = set.weights[0][1] = 1.0;
+      set.weights[1][2] = vertical * vertical;
       break;
   }
+}
+
+}  // namespace
+
+void SplineSolver::Memory::load_limits(const SplineProblem& problem) {
+  set_norm(state.velocity, problem.norm, problem.v_over_vertical);
+  set_norm(state.acceleration, problem.norm, problem.a_over_vertical);
+  set_norm(state.jerk_limit, LimitNorm::euclidean, 1.0);
   const std::size_t m = std::size_t(state.last);
   for (auto* set : {&velocity_, &acceleration_, &jerk_limit_}) set->clear();
   const bool jerk = !problem.j_max.empty();
@@ -118,9 +129,9 @@ void SplineSolver::Memory::load_limits(const SplineProblem& problem) {
     load_limit(problem, int(k), 2, acceleration_.emplace_back());
     if (jerk) load_limit(problem, int(k), 3, jerk_limit_.emplace_back());
   }
-  state.velocity = velocity_.data();
-  state.acceleration = acceleration_.data();
-  state.jerk_limit = jerk ? jerk_limit_.data() : nullptr;
+  state.velocity.lanes = velocity_.data();
+  state.acceleration.lanes = acceleration_.data();
+  state.jerk_limit.lanes = jerk ? jerk_limit_.data() : nullptr;
 }
 
 void SplineSolver::Memory::load_limit(const SplineProblem& problem, int k, int order,
@@ -139,7 +150,11 @@ void SplineSolver::Memory::load_limit(const SplineProblem& problem, int k, int o
     // Control points of neighbouring pieces coincide at a joint: one limit, the tighter.
     const bool shared = j == 0 && order < 3;
     const double limit = shared ? std::min(limits[i - 1], limits[i]) : limits[i];
-    if (!is_row(map, k, limit)) continue;
+    if (!is_row(map, k, limit,
+                order == 1   ? state.velocity
+                : order == 2 ? state.acceleration
+                             : state.jerk_limit))
+      continue;
     for (int b = 0; b < 3; ++b) {
       to.map[b][j] = map.from_first[b] / limit;
       to.map[b + 3][j] = map.from_second[b] / limit;
@@ -153,7 +168,7 @@ void SplineSolver::Memory::load_limit(const SplineProblem& problem, int k, int o
 
 // A point that no unknown moves is checked once and makes no row: the method needs an interior,
 // and a constant may lie on its limit.
-bool SplineSolver::Memory::is_row(const PointMap& map, int k, double limit) {
+bool SplineSolver::Memory::is_row(const PointMap& map, int k, double limit, const LimitSet& set) {
   const auto moves = [&](int joint) {
     return (joint > 0 && joint < state.last) || (state.ends_move && state.scale);
   };
@@ -162,9 +177,9 @@ bool SplineSolver::Memory::is_row(const PointMap& map, int k, double limit) {
   if ((first && moves(k)) || (second && moves(k + 1))) return true;
   if (state.scale) return false;  // an end at rest
   const Vec3 y = map(joint(k), joint(k + 1));
-  for (int r = 0; r < state.rows; ++r) {
+  for (int r = 0; r < set.rows; ++r) {
     double square = 0.0;
-    for (int c = 0; c < 3; ++c) square += state.weights[r][c] * y[c] * y[c];
+    for (int c = 0; c < 3; ++c) square += set.weights[r][c] * y[c] * y[c];
     if (!(std::sqrt(square) <= limit * (1.0 + 1e-9))) constant_point_violated = true;
   }
   return false;
@@ -205,11 +220,14 @@ void SplineSolver::Memory::start() {
   // One pass with slacks of zero: its residuals are the constraints themselves.
   const auto each_row = [&](auto&& visit) {
     for (FaceLanes& f : faces_) visit(f);
-    for (auto* set : {&velocity_, &acceleration_, &jerk_limit_}) {
-      for (LimitLanes& l : *set) {
-        for (int r = 0; r < state.rows; ++r) visit(l.row[r]);
+    const auto each_limit = [&](std::vector<LimitLanes>& limits, const LimitSet& set) {
+      for (LimitLanes& l : limits) {
+        for (int r = 0; r < set.rows; ++r) visit(l.row[r]);
       }
-    }
+    };
+    each_limit(velocity_, state.velocity);
+    each_limit(acceleration_, state.acceleration);
+    each_limit(jerk_limit_, state.jerk_limit);
   };
   double rows = 0.0;
   each_row([&](auto& row) {

@@ -24,7 +24,7 @@ struct SplineSolver::Memory {
   void load_faces(const SplineProblem& problem);
   void load_limits(const SplineProblem& problem);
   void load_limit(const SplineProblem& problem, int k, int order, LimitLanes& to);
-  bool is_row(const PointMap& map, int k, double limit);
+  bool is_row(const PointMap& map, int k, double limit, const LimitSet& set);
 
   struct Triple {
     Lanes v[3];

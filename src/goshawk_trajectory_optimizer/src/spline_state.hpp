@@ -39,6 +39,13 @@ struct LimitLanes {
   } row[kMostRows];
 };
 
+/// The limit on one derivative, all pieces.
+struct LimitSet {
+  LimitLanes* lanes = nullptr;        // one a piece; null: no such limit
+  int rows = 1;                       // norms of each point
+  double weights[kMostRows][3] = {};  // of the components of y in each row's norm
+};
+
 /// Sums over all points of one joint. Blocks of the Hessian are symmetric 3 x 3 matrices kept as
 /// xx xy xz yy | yz zz - -; the joint's are pp, vp, ap, vv, av, aa.
 struct JointSums {
@@ -81,9 +88,7 @@ struct SplineState {
   const double* jerk = nullptr;  // 36 a piece
   FaceRange* ranges = nullptr;
   FaceLanes* faces = nullptr;
-  LimitLanes* velocity = nullptr;
-  LimitLanes* acceleration = nullptr;
-  LimitLanes* jerk_limit = nullptr;  // or null
+  LimitSet velocity, acceleration, jerk_limit;
   JointSums* joints = nullptr;
   PieceSums* pieces = nullptr;
   Panel* panels = nullptr;

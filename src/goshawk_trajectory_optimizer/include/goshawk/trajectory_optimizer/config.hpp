@@ -13,7 +13,7 @@ struct Config {
   double piece_duration_s = 0.45;  // [s]
   int min_pieces = 8;
   int refinement_passes = 2;
-  double time_weight = 100.0;
+  double extra_time = 0.0;
   int max_iterations = 60;
   double max_stretch = 20.0;
 };
@@ -38,10 +38,10 @@ void describe(Self& c, Visitor&& visit) {
   visit("refinement_passes", c.refinement_passes, "",
         "how often the durations of the pieces are balanced and solved again (scale only)",
         Range{0.0, 20.0});
-  visit("time_weight", c.time_weight, "",
-        "how much short duration matters against smoothness: weight of the squared duration "
-        "beside the mean squared jerk, each in units of the trapezoid's (scale only)",
-        Range::positive(1e6));
+  visit("extra_time", c.extra_time, "",
+        "how much longer than the soonest flight may last so as to be smoother: 0.1 is 10 %, and "
+        "then the flight with the least jerk of that duration is flown",
+        Range{0.0, 10.0});
   visit("max_iterations", c.max_iterations, "", "of the interior-point method, in each solve",
         Range{5.0, 1000.0});
   visit("max_stretch", c.max_stretch, "",
