@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "goshawk/introspection/doctor_command.hpp"
 #include "goshawk/introspection/node_command.hpp"
 #include "goshawk/introspection/param_command.hpp"
 #include "goshawk/introspection/topic_command.hpp"
@@ -33,6 +34,8 @@ constexpr Verb kVerbs[] = {
     {"node", "list", [](const cli::Arguments& a) { return introspection::node_command(a); }},
     {"param", "describe COMPONENT: every parameter with unit, default and range",
      [](const cli::Arguments& a) { return introspection::param_command(a); }},
+    {"doctor", "look at machine, settings and domain: what does not fit, and how to mend it",
+     [](const cli::Arguments& a) { return introspection::doctor_command(a); }},
 };
 
 void print_help() {
