@@ -22,6 +22,15 @@ bool is_lossy(const Json& value) {
   return std::any_of(value.begin(), value.end(), is_lossy);
 }
 
+std::string hex(const std::vector<unsigned char>& bytes) {
+  std::string text;
+  for (const unsigned char byte : bytes) {
+    text += "0123456789abcdef"[byte >> 4];
+    text += "0123456789abcdef"[byte & 15];
+  }
+  return text;
+}
+
 int complain(const std::string& sentence) {
   std::fprintf(stderr, "%s\n", sentence.c_str());
   return 1;
@@ -49,6 +58,7 @@ int main(int argc, char** argv) {
                        {"log_time_ns", std::to_string(m.log_time_ns)},
                        {"bytes", m.data.size()},
                        {"lossy", is_lossy(*value)},
+                       {"again", hex(*introspection::json_to_cdr(**type, *value))},
                        {"value", *value}};
     std::printf("%s\n", line.dump(-1, ' ', false, Json::error_handler_t::replace).c_str());
     return true;
