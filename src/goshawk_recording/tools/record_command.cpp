@@ -1,4 +1,6 @@
-#include <chrono>
+#include <signal.h>
+#include <sys/prctl.h>
+
 #include <cstdio>
 #include <ctime>
 
@@ -18,6 +20,7 @@ struct Options {
   std::string file;
   bool overwrite = false;
   double duration_s = 0.0;  // 0: until Ctrl-C
+  bool stop_with_parent = false;
   bool json = false;
 };
 
@@ -35,6 +38,8 @@ void add_options(CLI::App& app, Options& o) {
   app.add_flag("--overwrite", o.overwrite, "replace the file where it exists");
   app.add_option("-d,--duration", o.duration_s, "[s] end by itself after this time")
       ->check(CLI::Range(0.0, 1e9));
+  app.add_flag("--stop-with-parent", o.stop_with_parent,
+               "end as on Ctrl-C when the process that started this one ends");
   app.add_flag("--json", o.json, "print one JSON object at the end (docs/cli.md)");
   app.footer(
       "Records until Ctrl-C. What is recorded is in the file within a second, and stays readable\n"
@@ -85,6 +90,7 @@ void print_end(const Recorder& recorder, const Options& o, double seconds) {
 
 int record(const Options& o) {
   const Interruptible interruptible;
+  if (o.stop_with_parent) prctl(PR_SET_PDEATHSIG, SIGINT);
   auto sink = create_file(o.file, o.overwrite);
   if (!sink) return report_failure("record", sink.error(), o.json, kNotDone);
   auto writer = Writer::create(*std::move(sink));
