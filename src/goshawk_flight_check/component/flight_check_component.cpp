@@ -22,8 +22,8 @@ double seconds(std::int64_t ns) {
   return double(ns) * 1e-9;
 }
 
-/// octomap_binary, committed_trajectory, odom or odom_true -> stage_report: each committed trajectory's verdict
-/// when it comes, the flown leg's when it is over, and a contact at once.
+/// octomap_binary, committed_trajectory, odom or odom_true -> stage_report: each committed
+/// trajectory's verdict when it comes, the flown leg's when it is over, and a contact at once.
 class FlightCheckComponent : public Component {
  public:
   explicit FlightCheckComponent(Node& node)
