@@ -1,8 +1,5 @@
 #include "goshawk/trajectory_optimizer/trajectory_optimizer.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <type_traits>
 #include <utility>
 
 #include "goshawk/trajectory_optimizer/request_check.hpp"
@@ -13,21 +10,6 @@ namespace {
 
 constexpr double kLongest_s = 1e6;
 
-std::string faults_of(const Config& config) {
-  std::string faults;
-  describe(config,
-           [&](const char* name, const auto& value, const char*, const char*, const auto& rule) {
-             bool valid = true;
-             if constexpr (std::is_same_v<std::decay_t<decltype(value)>, std::string>) {
-               valid = std::ranges::find(rule.choices, value) != rule.choices.end();
-             } else {
-               valid = rule.contains(double(value));
-             }
-             if (!valid) faults += std::string(faults.empty() ? "" : ", ") + name;
-           });
-  return faults;
-}
-
 }  // namespace
 
 TrajectoryOptimizer::TrajectoryOptimizer(const Config& config)
@@ -37,9 +19,9 @@ TrajectoryOptimizer& TrajectoryOptimizer::operator=(TrajectoryOptimizer&&) noexc
 TrajectoryOptimizer::~TrajectoryOptimizer() = default;
 
 Result<TrajectoryOptimizer> TrajectoryOptimizer::create(const Config& config) {
-  if (const std::string faults = faults_of(config); !faults.empty()) {
-    return fail(ErrorCode::invalid_parameter, "out of range in the optimizer's config: " + faults);
-  }
+  ParameterFaults faults;
+  describe(config, faults);
+  if (auto status = faults.status("the optimizer's config: "); !status) return status.error();
   return TrajectoryOptimizer(config);
 }
 
