@@ -108,7 +108,7 @@ ObstacleLayers CorridorBuilder::Impl::layers(const VoxelGrid& grid, const RawObs
 }
 
 void CorridorBuilder::Impl::improve(double resolution_m) {
-  measure_overlaps(chain_);
+  if (config.generator == "box") measure_overlaps(chain_);
   if (!config.drop_covered) return;
   const bool boxes = config.generator == "box";  // which measure no room around points
   auto room_m = [&](const PathPoint& point) {
