@@ -51,7 +51,9 @@ class Planner {
  public:
   static Result<Planner> create(const PlanningConfig& config);
   void set_map(const LoadedMap& map);
-  Plan plan(const FlatState& start, const FlatState& goal, const Limits& limits);
+  /// @param other_goals_map [m] positions that will do as well as the goal's
+  Plan plan(const FlatState& start, const FlatState& goal, const Limits& limits,
+            const std::vector<Vec3>& other_goals_map = {});
 
  private:
   Planner(path_search::PathSearch search, corridor_builder::CorridorBuilder builder,
@@ -59,7 +61,8 @@ class Planner {
       : search_(std::move(search)),
         builder_(std::move(builder)),
         optimizer_(std::move(optimizer)) {}
-  Status run(const FlatState& start, const FlatState& goal, const Limits& limits, Plan& plan);
+  Status run(FlatState start, FlatState goal, const std::vector<Vec3>& goals_map,
+             const Limits& limits, Plan& plan);
 
   path_search::PathSearch search_;
   corridor_builder::CorridorBuilder builder_;

@@ -1,11 +1,16 @@
-#include "worlds.hpp"
+#include "search/worlds.hpp"
 
 #include <algorithm>
 #include <cstdlib>
-#include <fstream>
-#include <sstream>
+#include <stdexcept>
 
+#include "goshawk/core/inflation.hpp"
 #include "goshawk/core/random.hpp"
+#include "goshawk/map_server/map_file.hpp"
+#include "goshawk/map_server/voxel_map.hpp"
+#include "goshawk/path_search/grid_search.hpp"
+#include "goshawk/worlds/world.hpp"
+#include "search/warframe_files.hpp"
 
 namespace worlds {
 namespace {
@@ -106,25 +111,59 @@ World office(Index3 size, std::uint64_t seed) {
   return world;
 }
 
-World warframe(const std::string& name, std::size_t problems) {
+World forest(Index3 size, double ratio, std::uint64_t seed) {
+  goshawk::worlds::WorldSpec spec;
+  spec.kind = "forest";
+  spec.size_m = 0.2 * goshawk::Vec3(size.x, size.y, size.z);
+  spec.density = ratio;
+  spec.seed = seed;
+  const auto made = goshawk::worlds::make_world(spec);
+  if (!made) throw std::runtime_error(made.error().message);
+  World world{"forest " + dimensions(size), *goshawk::inflate(made->occupied, 0.2, 0.2), {}};
+  world.queries = {corner_to_corner(world.blocked)};
+  return world;
+}
+
+std::string data_folder() {
   const char* folder = std::getenv("GOSHAWK_DATA");
-  const std::string path =
-      std::string(folder != nullptr ? folder : "../shared/data") + "/warframe/" + name + ".3dmap";
-  std::ifstream map_file(path), problem_file(path + ".3dscen");
+  return folder != nullptr ? folder : "../shared/data";
+}
+
+World octomap(const std::string& name, std::size_t queries) {
+  using namespace goshawk::map_server;
+  World world{name, {}, {}};
+  const auto source = load_map(data_folder() + "/octomap/" + name);
+  if (!source) return world;
+  const auto raw = voxelize(*source->tree);
+  if (!raw) return world;
+  const auto grid =
+      make_voxel_grid(*raw, {.unknown = UnknownPolicy::blocked, .inflation_m = 0.2}, 1);
+  if (!grid) return world;
+  world.blocked = grid->occupied;
+  const auto planner = goshawk::path_search::make_grid_search(
+      goshawk::path_search::Variant::jastar, goshawk::path_search::CornerRule::no_squeeze);
+  planner->set_map(world.blocked);
+  Random random(1);
+  const Index3 s = world.blocked.size();
+  const auto any = [&] { return Index3{random.below(s.x), random.below(s.y), random.below(s.z)}; };
+  for (int tries = 0; tries < 1000000 && world.queries.size() < queries; ++tries) {
+    const World::Query q{any(), any()};
+    if (world.blocked.get(q.start) || world.blocked.get(q.goal)) continue;
+    if (planner->search(q.start, q.goal).ok()) world.queries.push_back(q);
+  }
+  return world;
+}
+
+World warframe(const std::string& name, std::size_t problems) {
+  const std::string path = data_folder() + "/warframe/" + name + ".3dmap";
   World world{"warframe " + name, {}, {}};
-  std::string word;
-  Index3 size, at;
-  if (!(map_file >> word >> size.x >> size.y >> size.z) || !problem_file) return world;
-  world.blocked = BitGrid(size, true);
-  while (map_file >> at.x >> at.y >> at.z) world.blocked.set(at, true);
-  std::string line;
-  for (std::size_t n = 0; n < 2; ++n) std::getline(problem_file, line);  // version, map name
-  while (world.queries.size() < problems && std::getline(problem_file, line)) {
-    World::Query q;
-    std::istringstream in(line);
-    if (in >> q.start.x >> q.start.y >> q.start.z >> q.goal.x >> q.goal.y >> q.goal.z) {
-      world.queries.push_back(q);
-    }
+  auto map = read_voxel_map(path);
+  auto all = read_scenario(path + ".3dscen");
+  if (!map || !all) return world;
+  world.blocked = *std::move(map);
+  const std::size_t stride = std::max<std::size_t>(1, all->size() / problems);
+  for (std::size_t k = 0; k < all->size(); k += stride) {
+    world.queries.push_back({(*all)[k].start, (*all)[k].goal});
   }
   return world;
 }

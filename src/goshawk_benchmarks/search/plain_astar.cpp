@@ -1,4 +1,4 @@
-#include "plain_astar.hpp"
+#include "search/plain_astar.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -32,8 +32,18 @@ World boxes(Index3 size, double ratio, std::uint64_t seed);
 /// Rooms of 5 x 5 m at 0.2 m with a door in each wall and a window here and there.
 World office(Index3 size, std::uint64_t seed);
 
-/// A Warframe map with its first problems. @return a world without queries where the files of
-/// that name are missing
+/// Trunks and crowns of goshawk_worlds, grown by 0.2 m; between opposite corners.
+World forest(Index3 size, double ratio, std::uint64_t seed);
+
+/// A Warframe map with as many of its problems, spread over the file. @return a world without
+/// queries where the files of that name are missing
 World warframe(const std::string& name, std::size_t problems);
+
+/// An OctoMap file of the data folder, unknown space blocked, grown by 0.2 m, with random pairs of
+/// voxels that are joined. @return a world without queries where the file is missing
+World octomap(const std::string& name, std::size_t queries);
+
+/// The folder with maps of the world: GOSHAWK_DATA, or ../shared/data.
+std::string data_folder();
 
 }  // namespace worlds
