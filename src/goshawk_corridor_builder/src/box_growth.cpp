@@ -82,6 +82,18 @@ void planes_of(const VoxelBox& box, const Margins& margins, std::vector<Plane>& 
   }
 }
 
+// Where a segment leaves the cube of a voxel that it meets.
+Vec3 exit_of(const Index3& voxel, const Vec3& p, const Vec3& q) {
+  const Vec3 d = q - p;
+  double t = 1.0;
+  for (int a = 0; a < 3; ++a) {
+    if (std::abs(d[a]) < 1e-12) continue;
+    const double face = coordinate(voxel, a) + (d[a] > 0.0 ? 1 : 0);
+    t = std::clamp((face - p[a]) / d[a], 0.0, t);
+  }
+  return p + t * d;
+}
+
 }  // namespace
 
 std::optional<Blockage> BoxGrowth::build(const VoxelGrid& grid, std::span<const PathPoint> path,
@@ -90,9 +102,8 @@ std::optional<Blockage> BoxGrowth::build(const VoxelGrid& grid, std::span<const 
   voxels_.clear();
   for (std::size_t i = 0; i + 1 < path.size(); ++i) {
     if (!walk_.append(grid.occupied, path[i].p_grid, path[i + 1].p_grid, voxels_)) {
-      const Vec3 last = voxels_.empty() ? path[i].p_grid
-                                        : Vec3(voxels_.back().x + 0.5, voxels_.back().y + 0.5,
-                                               voxels_.back().z + 0.5);
+      const Vec3& p = path[i].p_grid;
+      const Vec3 last = voxels_.empty() ? p : exit_of(voxels_.back(), p, path[i + 1].p_grid);
       return Blockage{path[i].segment, last};
     }
   }

@@ -30,6 +30,19 @@ std::string number_text(double value) {
   return text;
 }
 
+// Is a voxel at p, or one that touches it, blocked because it was never measured?
+bool touches_unknown(const VoxelGrid& grid, const Vec3& p) {
+  if (!grid.unknown_is_occupied) return false;
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    const Vec3 side((corner & 1U) ? 1e-6 : -1e-6, (corner & 2U) ? 1e-6 : -1e-6,
+                    (corner & 4U) ? 1e-6 : -1e-6);
+    const Vec3 f = (p + side).array().floor();
+    const Index3 i{int(f.x()), int(f.y()), int(f.z())};
+    if (grid.occupied.contains(i) && grid.occupied.get(i) && !grid.is_known(i)) return true;
+  }
+  return false;
+}
+
 // Every fault of a config, by its own description.
 struct Faults {
   std::string text;
@@ -108,7 +121,7 @@ ObstacleLayers CorridorBuilder::Impl::layers(const VoxelGrid& grid, const RawObs
 }
 
 void CorridorBuilder::Impl::improve(double resolution_m) {
-  measure_overlaps(chain_);
+  if (config.generator == "box") measure_overlaps(chain_);
   if (!config.drop_covered) return;
   const bool boxes = config.generator == "box";  // which measure no room around points
   auto room_m = [&](const PathPoint& point) {
@@ -209,10 +222,13 @@ Status CorridorBuilder::Impl::check_room(std::span<const Vec3> path) const {
 Error CorridorBuilder::Impl::blocked(const VoxelGrid& grid, std::span<const Vec3> path,
                                      const Blockage& at) const {
   const Vec3 place = grid.geometry.origin_map + grid.geometry.resolution_m * at.p_grid;
-  return fail(ErrorCode::segment_blocked,
-              segment_text(path, at.segment) + " is blocked near " + to_text(place) +
-                  ": an obstacle (grown by " + number_text(grid.inflation_m) +
-                  " m) is in the way; search the path on this map again");
+  const std::string what =
+      touches_unknown(grid, at.p_grid)
+          ? "space that was never measured counts as an obstacle there"
+          : "an obstacle (grown by " + number_text(grid.inflation_m) + " m) is in the way";
+  return fail(ErrorCode::segment_blocked, segment_text(path, at.segment) + " is blocked near " +
+                                              to_text(place) + ": " + what +
+                                              "; search the path on this map again");
 }
 
 Result<CorridorBuilder> CorridorBuilder::create(const Config& config) {

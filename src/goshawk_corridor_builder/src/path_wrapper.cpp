@@ -64,14 +64,49 @@ std::optional<Blockage> PathWrapper::wrap(const VoxelGrid& grown, const Obstacle
   measure_rooms(grown.occupied, points);
   chain.clear();
   chain.joints_map.push_back(points.front().p_map);
+  pieces_.clear();
   for (std::size_t i = 0; i + 1 < points.size();) {
     const Step step = wrap_one(i, chain);
     if (step == Step::blocked) return Blockage{points[i].segment, blocked_grid_};
-    if (step == Step::bent) continue;
-    i = config_.drop_covered ? covered_until(chain[chain.size() - 1], i + 1) : i + 1;
-    chain.joints_map.push_back(points[i].p_map);
+    if (step == Step::done) i = join(i, chain);
   }
   return std::nullopt;
+}
+
+// The last polytope of the chain, which begins at point i, joins the one before; where they share
+// too little, a thin one of them is taken back. @return the point to go on from
+std::size_t PathWrapper::join(std::size_t i, Chain& chain) {
+  const std::size_t last = chain.size() - 1;
+  if (last > 0) {
+    const Ball ball = largest_ball(chain[last - 1], chain[last]);
+    if (ball.radius_m < (kHalfVoxel - kRounding) * grown_->geometry.resolution_m) {
+      if (thin_ && bend_later(i)) {
+        chain.drop_last();
+        return i;
+      }
+      const Piece before = pieces_.back();
+      if (before.thin && bend_later(before.begin)) {
+        chain.drop_last();
+        chain.drop_last();
+        chain.joints_map.pop_back();
+        if (chain.size() > 0) chain.overlaps.pop_back();
+        pieces_.pop_back();
+        return before.begin;
+      }
+    }
+    chain.overlaps.push_back(ball);
+  }
+  pieces_.push_back({i, thin_});
+  i = config_.drop_covered ? covered_until(chain[last], i + 1) : i + 1;
+  chain.joints_map.push_back((*points_)[i].p_map);
+  return i;
+}
+
+bool PathWrapper::bend_later(std::size_t i) {
+  PathPoint& point = (*points_)[i];
+  if (!config_.bend_path || point.settled) return false;
+  point.bend = true;
+  return true;
 }
 
 // Polytopes that meet at a joint must share a ball there; start and goal may lie at an obstacle.
@@ -88,13 +123,15 @@ void PathWrapper::measure_rooms(const BitGrid& occupied, std::vector<PathPoint>&
 PathWrapper::Step PathWrapper::wrap_one(std::size_t i, Chain& chain) {
   const PathPoint p = (*points_)[i];
   const PathPoint q = (*points_)[i + 1];
-  const bool may_bend = config_.bend_path && !p.settled;
-  const bool inner = i + 2 < points_->size();
-  if (may_bend && inner && q.needed == 0.0) return move_joint(i, chain);
+  const bool no_ball = i + 2 < points_->size() && q.needed == 0.0;  // around the next joint
+  if (no_ball && config_.bend_path && !p.settled) return move_joint(i, chain);
+  const bool may_bend = p.bend && !p.settled;
   const Separation result = build(p, q, may_bend, chain);
+  thin_ = result == Separation::thin || no_ball;
   if (result == Separation::roomy) return Step::done;
-  if (result == Separation::blocked && !(may_bend && p.moved)) return Step::blocked;
-  if (!may_bend) return Step::done;
+  if (result == Separation::blocked && (!p.moved || p.settled)) return Step::blocked;
+  if (!may_bend && result == Separation::thin) return Step::done;
+  // A joint that was moved may lie behind an obstacle, but not from a path that is bent.
   bend(i, between(p, q));
   return Step::bent;
 }

@@ -206,6 +206,18 @@ TEST_P(BothGenerators, NamesTheSegmentThatIsBlockedOrLeavesTheMap) {
                "leaves the map");
 }
 
+TEST_P(BothGenerators, SaysWhereASegmentEntersSpaceThatWasNeverMeasured) {
+  VoxelGrid grid = world_with_wall();
+  grid.known = BitGrid(grid.geometry.size, false, true);
+  const std::vector<Vec3> path{{0.5, 0.5, 0.5}, {1.5, 0.5, 0.5}, {3.0, 0.5, 0.5}};
+  expect_error(builder_.build(grid, path), ErrorCode::segment_blocked, "an obstacle (grown");
+  for (int y = 0; y < 10; ++y) {
+    for (int z = 0; z < 5; ++z) grid.known.set({10, y, z}, false);
+  }
+  expect_error(builder_.build(grid, path), ErrorCode::segment_blocked, "segment 1");
+  expect_error(builder_.build(grid, path), ErrorCode::segment_blocked, "never measured");
+}
+
 TEST_P(BothGenerators, StaysExactFarFromTheOriginAndRefusesAMapThatIsTooFar) {
   VoxelGrid grid = world_with_wall();
   const std::vector<Vec3> near{{2.0, 1.0, 0.5}, {0.5, 1.0, 0.5}, {1.5, 1.5, 1.9}};
