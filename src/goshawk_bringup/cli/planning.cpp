@@ -73,6 +73,9 @@ void Planner::set_map(std::shared_ptr<const VoxelGrid> grid) {
 
 Plan Planner::plan(const FlatState& start, const FlatState& goal, const Limits& limits) {
   Plan plan;
+  plan.start = start;
+  plan.goal = goal;
+  plan.limits = limits;
   plan.outcome = run(start, goal, limits, plan);
   return plan;
 }
@@ -88,9 +91,11 @@ Status Planner::run(const FlatState& start, const FlatState& goal, const Limits&
                             [&] { return builder_.build(*grid_, plan.path->waypoints_map); });
   if (!corridor) return corridor.error();
   plan.corridor = *std::move(corridor);
+  plan.start.position = plan.corridor->waypoints_map.front();
+  plan.goal.position = plan.corridor->waypoints_map.back();
   auto solution =
       run_stage(plan, "trajectory_optimizer", std::string(optimizer_.implementation()),
-                [&] { return optimizer_.optimise(*plan.corridor, start, goal, limits); });
+                [&] { return optimizer_.optimise(*plan.corridor, plan.start, plan.goal, limits); });
   if (!solution) return solution.error();
   plan.solution = *std::move(solution);
   return success();

@@ -38,6 +38,8 @@ Result<LoadedMap> load_map(const map_server::Config& config);
 
 /// What came out of each stage, as far as it went.
 struct Plan {
+  FlatState start, goal;  // what the trajectory was asked to begin and end with
+  Limits limits;
   std::vector<StageTime> stages;
   std::optional<path_search::PlannedPath> path;
   std::optional<Corridor> corridor;

@@ -32,27 +32,37 @@ class TrajectoryOptimizerComponent : public Component {
  private:
   void on_corridor(const msg::Corridor& m, const MessageInfo& info) {
     Timing timing{.wire_ns = wire_time_ns(m.header(), info)};
-    const auto request = open_request(m.request(), node_.now_ns(), reporter_, timing);
+    auto request = open_request(m.request(), node_.now_ns(), reporter_, timing);
     if (!request) return;
     auto [solution, compute_ns] = timed([&]() -> Result<Solution> {
       const auto corridor = conversions::from_msg(m);
       if (!corridor) return corridor.error();
-      return optimizer_.optimise(*corridor, request->start, request->goal, request->limits);
+      // The search may have moved the ends: the corridor knows where they are.
+      request->start.position = corridor->waypoints_map.front();
+      request->goal.position = corridor->waypoints_map.back();
+      const Query query{.duration_s = request->duration_s, .out_of_time = [&] {
+                          return !conversions::check_deadline(*request, node_.now_ns());
+                        }};
+      return optimizer_.optimise(*corridor, request->start, request->goal, request->limits, query);
     });
     timing.compute_ns = compute_ns;
     if (!solution) return reporter_.failed(request->id, solution.error(), timing);
-    publish(m, *solution, compute_ns);
+    publish(m, *request, *solution, compute_ns);
     reporter_.answered(request->id, timing,
                        {{"pieces", double(solution->trajectory.pieces.size())},
                         {"iterations", double(solution->iterations)},
                         {"duration_s", solution->trajectory.duration_s()},
                         {"length_m", solution->trajectory.length_m()},
-                        {"jerk_cost", solution->jerk_cost}});
+                        {"jerk_cost", solution->jerk_cost},
+                        {"start_excess_s", solution->certificate.start_excess_s}});
   }
 
-  void publish(const msg::Corridor& corridor, const Solution& solution, std::int64_t compute_ns) {
+  void publish(const msg::Corridor& corridor, const conversions::PlanRequest& request,
+               const Solution& solution, std::int64_t compute_ns) {
     msg::BezierTrajectory m;
     m.request(corridor.request());
+    m.request().start().position(conversions::to_msg(request.start).position());
+    m.request().goal().position(conversions::to_msg(request.goal).position());
     m.implementation(std::string(optimizer_.implementation()));
     m.map_version(corridor.map_version());
     m.pieces(conversions::to_msg(solution.trajectory));
