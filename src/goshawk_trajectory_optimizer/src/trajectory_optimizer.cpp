@@ -18,7 +18,10 @@ std::string faults_of(const Config& config) {
   describe(config,
            [&](const char* name, const auto& value, const char*, const char*, const auto& rule) {
              bool valid = true;
-             if constexpr (std::is_same_v<std::decay_t<decltype(value)>, std::string>) {
+             using Rule = std::decay_t<decltype(rule)>;
+             if constexpr (std::is_same_v<Rule, Anything>) {
+               valid = std::isfinite(double(value));
+             } else if constexpr (std::is_same_v<Rule, OneOf>) {
                valid = std::ranges::find(rule.choices, value) != rule.choices.end();
              } else {
                valid = rule.contains(double(value));
