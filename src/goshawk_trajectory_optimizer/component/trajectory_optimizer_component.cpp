@@ -2,6 +2,7 @@
 #include "goshawk/runtime/stage.hpp"
 #include "goshawk/trajectory_optimizer/config.hpp"
 #include "goshawk/trajectory_optimizer/trajectory_optimizer.hpp"
+#include "goshawk/trajectory_optimizer/yaw.hpp"
 
 namespace goshawk::trajectory_optimizer {
 namespace {
@@ -20,7 +21,8 @@ class TrajectoryOptimizerComponent : public Component {
  public:
   explicit TrajectoryOptimizerComponent(Node& node)
       : node_(node),
-        optimizer_(make_optimizer(node.parameters<Config>())),
+        config_(node.parameters<Config>()),
+        optimizer_(make_optimizer(config_)),
         reporter_(node, std::string(optimizer_.implementation())),
         publisher_(node.advertise<msg::BezierTrajectory>("trajectory", Qos::reliable_last())) {
     node.subscribe<msg::Corridor>(
@@ -68,6 +70,9 @@ class TrajectoryOptimizerComponent : public Component {
     m.pieces(conversions::to_msg(solution.trajectory));
     m.polytopes(corridor.polytopes());
     m.certificate(conversions::to_msg(solution.certificate));
+    if (auto status = add_yaw(request, solution.trajectory, m); !status) {
+      return reporter_.failed(request.id, status.error());
+    }
     m.compute_ns(compute_ns);
     m.header(conversions::make_header(node_.now_ns()));
     if (auto status = publisher_.publish(m); !status) {
@@ -75,7 +80,28 @@ class TrajectoryOptimizerComponent : public Component {
     }
   }
 
+  // Begins where the yaw of the last trajectory ended.
+  Status add_yaw(const conversions::PlanRequest& request, const Trajectory& trajectory,
+                 msg::BezierTrajectory& m) {
+    if (config_.yaw == "none") return success();
+    const auto curve = plan_yaw(
+        trajectory, {.mode = config_.yaw == "fixed"          ? YawMode::fixed
+                             : config_.yaw == "along_motion" ? YawMode::along_motion
+                                                             : YawMode::towards_point,
+                     .start_rad = yaw_rad_,
+                     .fixed_rad = request.goal_yaw_rad,
+                     .point_map = Vec3(config_.yaw_point_x_m, config_.yaw_point_y_m, 0.0),
+                     .rate_max_rad_s = config_.yaw_rate_max_rad_s});
+    if (!curve) return curve.error();
+    yaw_rad_ = curve->yaw_rad(curve->duration_s());
+    m.yaw_step(curve->step_s);
+    m.yaw_points(curve->points_rad);
+    return success();
+  }
+
   Node& node_;
+  const Config config_;
+  double yaw_rad_ = 0.0;  // [rad] where the last trajectory ends
   TrajectoryOptimizer optimizer_;
   StageReporter reporter_;
   Publisher<msg::BezierTrajectory> publisher_;
