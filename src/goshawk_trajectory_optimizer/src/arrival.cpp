@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 
+#include "goshawk/trajectory_optimizer/flatness.hpp"
 #include "goshawk/trajectory_optimizer/request_check.hpp"
 #include "method.hpp"
 
@@ -10,6 +11,8 @@ namespace goshawk::trajectory_optimizer {
 namespace {
 
 constexpr double kRounding = 1e-9;  // of a duration
+constexpr int kMostSlowings = 8;
+constexpr double kLeastShare = 1e-3;  // of the acceleration limit
 
 void stretch(Plan& plan, double factor) {
   for (double& duration : plan.durations_s) duration *= factor;
@@ -68,6 +71,57 @@ Result<Solution> TrajectoryOptimizer::Method::arrive_smoothly(const Request& req
     }
   }
   return failure(request);
+}
+
+Result<Solution> TrajectoryOptimizer::Method::within_vehicle(const Request& request,
+                                                             Solution soonest) {
+  const FlatnessLimits vehicle{config_.max_thrust_m_s2, config_.min_thrust_m_s2,
+                               config_.max_tilt_rad};
+  if (vehicle.none() || respects(flatness_of(soonest.trajectory), vehicle)) return soonest;
+  const double safe = vehicle.safe_acceleration_m_s2() / request.limits.a_max_m_s2;
+  const bool known = config_.method == "scale" || config_.method == "fixed";
+  // A third of the axes' worth: what per-axis limits let through is longer.
+  const double share = safe / (request.limits.norm == LimitNorm::euclidean ? 1.0 : std::sqrt(3.0));
+  std::optional<Solution> slowed;
+  Plan plan = best_plan_;
+  for (int pass = 0; known && share > kLeastShare && pass < kMostSlowings; ++pass) {
+    plan.a_factors.resize(plan.durations_s.size(), 1.0);
+    for (std::size_t k = 0; k < plan.durations_s.size(); ++k) {
+      const auto piece =
+          BezierPiece::between(plan.joints[k], plan.joints[k + 1], plan.durations_s[k]);
+      if (!respects(flatness_of(piece), vehicle)) plan.a_factors[k] = std::min(1.0, share);
+    }
+    best_.reset();
+    refine(request, plan, 0);
+    if (!best_) break;
+    plan = best_plan_;
+    if (!respects(flatness_of(best_->trajectory), vehicle)) continue;
+    slowed = finish();
+    break;
+  }
+  // Or carefully everywhere, where that is no slower.
+  if (known && share > kLeastShare) {
+    Limits limits = request.limits;
+    limits.a_max_m_s2 *= std::min(1.0, share);
+    limits.a_max_vertical_m_s2 *= std::min(1.0, share);
+    const Plan plan_of_slowed = best_plan_;
+    auto careful = soonest_flight({request.corridor, request.start, request.goal, limits,
+                                   request.duration_s, request.out_of_time});
+    if (careful && respects(flatness_of(careful->trajectory), vehicle) &&
+        (!slowed || careful->trajectory.duration_s() < slowed->trajectory.duration_s())) {
+      careful->certificate = certify(careful->trajectory, request.corridor.polytopes,
+                                     request.limits, request.start, request.goal);
+      slowed = *std::move(careful);
+    } else {
+      best_plan_ = plan_of_slowed;
+    }
+  }
+  if (slowed) return *std::move(slowed);
+  return fail(ErrorCode::trajectory_infeasible,
+              "the flight asks more thrust or tilt than the vehicle has, and could not be slowed "
+              "enough: lower the acceleration limit, to " +
+                  std::to_string(std::max(0.0, safe * request.limits.a_max_m_s2)) +
+                  " m/s^2 to be sure");
 }
 
 // Straight on along the velocity, farther and farther, until there is a trajectory; of the first

@@ -32,7 +32,8 @@ void stretch_durations(Plan& plan, double factor) {
 
 Result<Solution> TrajectoryOptimizer::Method::answer(const Request& request) {
   iterations_ = solves_ = 0;
-  auto soon = soonest(request);
+  auto soon = soonest_flight(request);
+  if (soon) soon = within_vehicle(request, *std::move(soon));
   if (!soon) return soon;
   if (request.duration_s > 0.0) return arrive(request, request.duration_s, *std::move(soon));
   if (config_.extra_time > 0.0) {
@@ -42,7 +43,7 @@ Result<Solution> TrajectoryOptimizer::Method::answer(const Request& request) {
   return soon;
 }
 
-Result<Solution> TrajectoryOptimizer::Method::soonest(const Request& request) {
+Result<Solution> TrajectoryOptimizer::Method::soonest_flight(const Request& request) {
   best_.reset();
   last_ = {};
   if (config_.method == "thesis") return thesis(request);
@@ -129,7 +130,7 @@ void TrajectoryOptimizer::Method::balance(const Request& request, Plan& plan) co
   for (std::size_t k = 0; k < plan.durations_s.size(); ++k) {
     const auto piece =
         BezierPiece::between(plan.joints[k], plan.joints[k + 1], plan.durations_s[k]);
-    const double u = time_factor(usage_of(piece, request.limits));
+    const double u = time_factor(usage_of(piece, request.limits, plan.a_factor(k)));
     plan.durations_s[k] *= std::pow(std::clamp(u, 0.3, 1.0), kBalance);
   }
 }
@@ -226,7 +227,7 @@ bool TrajectoryOptimizer::Method::solve_scale(const Request& request, Plan& plan
     for (std::size_t k = 0; k < plan.durations_s.size(); ++k) {
       const auto piece =
           BezierPiece::between(plan.joints[k], plan.joints[k + 1], plan.durations_s[k]);
-      exact = std::max(exact, time_factor(usage_of(piece, request.limits)));
+      exact = std::max(exact, time_factor(usage_of(piece, request.limits, plan.a_factor(k))));
     }
     exact *= 1.0 + 1e-12;
     stretch_durations(plan, exact);

@@ -18,9 +18,11 @@ class TrajectoryOptimizer::Method {
   Result<Solution> stop(const Polytope& free_space, const FlatState& start, const Limits& limits);
 
  private:
-  Result<Solution> soonest(const Request& request);
+  Result<Solution> soonest_flight(const Request& request);
   /// The smoothest trajectory of this duration, which is no shorter than the soonest.
   Result<Solution> arrive(const Request& request, double duration_s, Solution soonest);
+  /// Slows the pieces that ask more thrust or tilt than the vehicle has.
+  Result<Solution> within_vehicle(const Request& request, Solution soonest);
   Result<Solution> arrive_smoothly(const Request& request, double duration_s);
   Result<Solution> scale(const Request& request);
   Result<Solution> fixed(const Request& request);

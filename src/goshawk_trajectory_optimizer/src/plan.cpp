@@ -246,6 +246,7 @@ bool make_problem(const Request& request, const Plan& plan, bool scale, double t
   }
   problem.v_over_vertical = over_vertical(limits.v_max_m_s, limits.v_max_vertical_m_s);
   problem.a_over_vertical = over_vertical(limits.a_max_m_s2, limits.a_max_vertical_m_s2);
+  for (std::size_t k = 0; k < m; ++k) problem.a_max[k] *= plan.a_factor(k);
   allow_for_start(request, plan, problem);
   // A start or goal may lie on a limit: half of the certificate's tolerance gives it an interior.
   const auto loosen = [&](std::size_t piece) {

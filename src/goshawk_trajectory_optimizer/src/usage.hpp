@@ -29,6 +29,13 @@ inline Usage usage_of(const BezierPiece& piece, const Limits& limits) {
   return u;
 }
 
+/// Of a piece that may use only this share of the acceleration limit.
+inline Usage usage_of(const BezierPiece& piece, const Limits& limits, double a_factor) {
+  Usage u = usage_of(piece, limits);
+  u.acceleration /= a_factor;
+  return u;
+}
+
 /// By what the durations of a flight from rest to rest must be multiplied, at least.
 inline double time_factor(const Usage& u) {
   return std::max({u.speed, std::sqrt(u.acceleration), std::cbrt(u.jerk)});

@@ -16,6 +16,13 @@ struct Config {
   double extra_time = 0.0;
   int max_iterations = 60;
   double max_stretch = 20.0;
+  double max_thrust_m_s2 = 0.0;  // [m/s^2] over the mass
+  double min_thrust_m_s2 = 0.0;  // [m/s^2] over the mass
+  double max_tilt_rad = 0.0;     // [rad]
+  std::string yaw = "none";
+  double yaw_rate_max_rad_s = 1.5;  // [rad/s]
+  double yaw_point_x_m = 0.0;       // [m]
+  double yaw_point_y_m = 0.0;       // [m]
 };
 
 template <typename Self, typename Visitor>
@@ -47,6 +54,23 @@ void describe(Self& c, Visitor&& visit) {
   visit("max_stretch", c.max_stretch, "",
         "longest duration that is tried, in trapezoid durations (fixed and moving starts)",
         Range{1.0, 1000.0});
+  visit("max_thrust_m_s2", c.max_thrust_m_s2, "m/s^2",
+        "most thrust over the mass that the vehicle has; a flight that needs more is slowed where "
+        "it does (0: not checked)",
+        Range{0.0, 1e3});
+  visit("min_thrust_m_s2", c.min_thrust_m_s2, "m/s^2",
+        "least thrust over the mass, likewise (0: not checked)", Range{0.0, 9.0});
+  visit("max_tilt_rad", c.max_tilt_rad, "rad",
+        "how far the thrust may lean from the vertical, likewise (0: not checked)",
+        Range{0.0, 1.5});
+  visit("yaw", c.yaw, "",
+        "where to look: none (no wish), fixed (the request's goal yaw), along_motion or "
+        "towards_point",
+        OneOf{{"none", "fixed", "along_motion", "towards_point"}});
+  visit("yaw_rate_max_rad_s", c.yaw_rate_max_rad_s, "rad/s", "how fast yaw may turn",
+        Range::positive(100.0));
+  visit("yaw_point_x_m", c.yaw_point_x_m, "m", "what towards_point looks at, map", Anything{});
+  visit("yaw_point_y_m", c.yaw_point_y_m, "m", "what towards_point looks at, map", Anything{});
 }
 
 }  // namespace goshawk::trajectory_optimizer

@@ -28,11 +28,13 @@ struct Plan {
   std::vector<double> durations_s;  // m
   std::vector<int> polytopes;       // m: where each piece lives
   std::vector<FlatState> joints;    // m + 1
+  std::vector<double> a_factors;    // m, or none: of the acceleration limit, at most 1
   double reference_s = 0.0;         // [s] duration of the trapezoid, above zero
   double braking_s = 0.0;           // [s] how long a start above a limit may stay above it
   bool stays = false;               // no way to go: any duration will do
 
   double duration_s() const;
+  double a_factor(std::size_t piece) const { return a_factors.empty() ? 1.0 : a_factors[piece]; }
 };
 
 /// How a moving start (or goal) is met. The hull of a piece holds what its end state alone decides,
