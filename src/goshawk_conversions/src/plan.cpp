@@ -20,6 +20,7 @@ Result<PlanRequest> from_msg(const goshawk_msgs::msg::PlanRequest& m) {
   request.stamp_ns = to_ns(m.header().stamp());
   request.start = from_msg(m.start());
   request.goal = from_msg(m.goal());
+  request.other_goals_map = from_msg(m.other_goals());
   request.goal_yaw_rad = m.goal_yaw();
   request.deadline_s = m.deadline();
   for (const auto& [name, state] :
@@ -29,6 +30,12 @@ Result<PlanRequest> from_msg(const goshawk_msgs::msg::PlanRequest& m) {
                 std::string("the ") + name + " state of a plan request is not finite: position " +
                     to_text(state->position) + ", velocity " + to_text(state->velocity) +
                     ", acceleration " + to_text(state->acceleration));
+  }
+  for (std::size_t k = 0; k < request.other_goals_map.size(); ++k) {
+    if (request.other_goals_map[k].allFinite()) continue;
+    return fail(ErrorCode::invalid_input, "other goal " + std::to_string(k) +
+                                              " of a plan request is not finite: " +
+                                              to_text(request.other_goals_map[k]));
   }
   if (!std::isfinite(m.goal_yaw()) || !(m.deadline() >= 0.0 && std::isfinite(m.deadline()))) {
     return fail(ErrorCode::invalid_input,
@@ -47,6 +54,7 @@ goshawk_msgs::msg::PlanRequest to_msg(const PlanRequest& request) {
   m.id(request.id);
   m.start(to_msg(request.start));
   m.goal(to_msg(request.goal));
+  m.other_goals(to_points(request.other_goals_map));
   m.goal_yaw(request.goal_yaw_rad);
   m.limits(to_msg(request.limits));
   m.deadline(request.deadline_s);

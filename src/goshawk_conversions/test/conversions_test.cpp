@@ -41,6 +41,7 @@ TEST(PlanRequestMessage, SurvivesTheRoundTrip) {
   in.stamp_ns = 123'456'789'012;
   in.start = {random_vector(random), random_vector(random), random_vector(random), Vec3::Zero()};
   in.goal.position = random_vector(random);
+  in.other_goals_map = {random_vector(random), random_vector(random)};
   in.goal_yaw_rad = 1.5;
   in.deadline_s = 0.25;
   in.limits = {.v_max_m_s = 3.0, .a_max_m_s2 = 4.0, .norm = LimitNorm::per_axis};
@@ -52,6 +53,7 @@ TEST(PlanRequestMessage, SurvivesTheRoundTrip) {
   EXPECT_EQ(out->start.velocity, in.start.velocity);
   EXPECT_EQ(out->start.acceleration, in.start.acceleration);
   EXPECT_EQ(out->goal.position, in.goal.position);
+  EXPECT_EQ(out->other_goals_map, in.other_goals_map);
   EXPECT_EQ(out->goal_yaw_rad, in.goal_yaw_rad);
   EXPECT_EQ(out->deadline_s, in.deadline_s);
   EXPECT_EQ(out->limits.norm, LimitNorm::per_axis);
@@ -74,6 +76,10 @@ TEST(PlanRequestMessage, IsRefusedWithAnyNumberNotFinite) {
   EXPECT_EQ(from_msg(m).code(), ErrorCode::invalid_input);
   m = valid_request();
   m.deadline(-1.0);
+  EXPECT_EQ(from_msg(m).code(), ErrorCode::invalid_input);
+  m = valid_request();
+  m.other_goals().resize(2);
+  m.other_goals()[1].x(kNaN);
   EXPECT_EQ(from_msg(m).code(), ErrorCode::invalid_input);
 }
 

@@ -10,6 +10,7 @@ struct PlanRequest {
   std::int64_t stamp_ns = 0;
   FlatState start;
   FlatState goal;
+  std::vector<Vec3> other_goals_map;  // [m] positions that will do as well as the goal's
   double goal_yaw_rad = 0.0;
   Limits limits;
   double deadline_s = 0.0;  // after the stamp; 0 for none

@@ -10,10 +10,10 @@ namespace goshawk::trajectory_optimizer {
 
 struct Config {
   std::string method = "scale";
-  double piece_duration_s = 0.4;  // [s]
+  double piece_duration_s = 0.45;  // [s]
   int min_pieces = 8;
-  int refinement_passes = 0;
-  double time_weight = 100.0;
+  int refinement_passes = 2;
+  double extra_time = 0.0;
   int max_iterations = 60;
   double max_stretch = 20.0;
 };
@@ -24,8 +24,11 @@ void describe(Self& c, Visitor&& visit) {
   visit("method", c.method, "",
         "scale: durations and shape together, near time-optimal; fixed: minimum jerk with the "
         "durations of a trapezoid over the whole path, stretched until feasible; thesis: one "
-        "quintic a segment, trapezoid durations, limits per axis, never stretched",
-        OneOf{{"scale", "fixed", "thesis"}});
+        "quintic a segment, trapezoid durations, limits per axis, never stretched; minimum_snap "
+        "(thesis Ref. [40]): a polynomial through the waypoints that does not know the corridor; "
+        "polynomial (Ref. [42]): minimum jerk through the waypoints, planned again with more "
+        "waypoints where it leaves the corridor",
+        OneOf{{"scale", "fixed", "thesis", "minimum_snap", "polynomial"}});
   visit("piece_duration_s", c.piece_duration_s, "s",
         "longest piece of the first cut: shorter pieces fly faster and cost more to compute "
         "(not used by thesis)",
@@ -35,10 +38,10 @@ void describe(Self& c, Visitor&& visit) {
   visit("refinement_passes", c.refinement_passes, "",
         "how often the durations of the pieces are balanced and solved again (scale only)",
         Range{0.0, 20.0});
-  visit("time_weight", c.time_weight, "",
-        "how much short duration matters against smoothness: weight of the squared duration "
-        "beside the mean squared jerk, each in units of the trapezoid's (scale only)",
-        Range::positive(1e6));
+  visit("extra_time", c.extra_time, "",
+        "how much longer than the soonest flight may last so as to be smoother: 0.1 is 10 %, and "
+        "then the flight with the least jerk of that duration is flown",
+        Range{0.0, 10.0});
   visit("max_iterations", c.max_iterations, "", "of the interior-point method, in each solve",
         Range{5.0, 1000.0});
   visit("max_stretch", c.max_stretch, "",
