@@ -30,6 +30,7 @@ constexpr Verb kVerbs[] = {
      &cli::check_command},
     {"world", "make a world, or convert a map", &cli::world_command},
     {"launch", "start what a launch file lists, supervised, until Ctrl-C", &cli::launch_command},
+    {"view", "look at a flight, or live with --live, in a browser", &cli::view_command},
     {"run", "start one component: goshawk run COMPONENT --ros-args ...", &cli::run_command},
     {"bench", "measure plans over DDS, or a stage beside its rivals", &cli::bench_command},
     {"record", "record topics to an MCAP file, until Ctrl-C", &recording::record_command},
