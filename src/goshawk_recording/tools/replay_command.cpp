@@ -3,6 +3,7 @@
 
 #include "goshawk/recording/commands.hpp"
 #include "player.hpp"
+#include "print_messages.hpp"
 #include "qos_profiles.hpp"
 #include "verb.hpp"
 
@@ -16,6 +17,7 @@ struct Options {
   bool loop = false;
   bool hold = false;
   bool list = false;
+  bool print = false;
   bool json = false;
 };
 
@@ -39,6 +41,7 @@ void add_options(CLI::App& app, Options& o) {
       ->check(CLI::Range(0.0, 1e4));
   app.add_flag("--hold", o.hold, "stay after the end, so that latched topics can be read");
   app.add_flag("--list", o.list, "only say what is in the file");
+  app.add_flag("--print", o.print, "only print the messages, a line of JSON each");
   app.add_flag("--json", o.json, "print one JSON object (docs/cli.md)");
 }
 
@@ -156,6 +159,10 @@ int replay(const Options& o) {
   if (o.list) return list(*reader, o);
   const auto channels = choose(*reader, o);
   if (!channels) return report_failure("replay", channels.error(), o.json, kNotDone);
+  if (o.print) {
+    const auto printed = print_messages(*reader, *channels);
+    return printed ? kDone : report_failure("replay", printed.error(), o.json, kNotDone);
+  }
   if (o.player.start_offset_s > duration_s(*reader)) {
     char text[32];
     std::snprintf(text, sizeof text, "%.3f", duration_s(*reader));
