@@ -53,7 +53,7 @@ Result<Mission> plan(double density, std::uint64_t seed) {
                                                                 .inflation_m = growth_m});
   auto search = path_search::PathSearch::create({}).value();
   search.set_map(grid);
-  const auto path = search.plan({.start_map = {3, 0, 1}, .goals_map = {{3, 8, 2}}});
+  const auto path = search.plan(Vec3(3, 0, 1), Vec3(3, 8, 2));
   if (!path) return path.error();
   auto corridor =
       corridor_builder::CorridorBuilder::create({}).value().build(*grid, path->waypoints_map);
