@@ -38,6 +38,7 @@ void FlyOptions::add_to(CLI::App& app) {
   app.add_option("--output", folder, "flight folder (default flights/DATE)");
   app.add_option("--timeout", timeout_s, "[s] for each goal")->capture_default_str();
   app.add_option("-p", stage_parameters, "parameter of a stage, node:name:=value; may repeat");
+  app.add_flag("--no-record", no_record, "do not record the topics to flight.mcap");
   app.add_flag("--json", json, "print one JSON object (docs/cli.md)");
 }
 
@@ -305,6 +306,17 @@ Status check_domain_is_free(runtime::Context& context, runtime::Node& node, int 
   return success();
 }
 
+// A process of its own: a slow disk must not be felt in flight.
+Result<std::optional<LaunchProcess>> start_recorder(const FlyOptions& options,
+                                                    const Preparation& p, int domain) {
+  if (options.no_record) return std::optional<LaunchProcess>();
+  auto recorder = LaunchProcess::start_verb(
+      {"record", "--stop-with-parent", "--overwrite", "-o", p.folder + "/flight.mcap"}, domain,
+      p.folder + "/logs/record.log");
+  if (!recorder) return recorder.error();
+  return std::optional<LaunchProcess>(*std::move(recorder));
+}
+
 Result<Json> fly(const FlyOptions& options, const Preparation& p) {
   const auto domain = private_domain();
   if (!domain) return domain.error();
@@ -314,11 +326,14 @@ Result<Json> fly(const FlyOptions& options, const Preparation& p) {
   if (!context) return context.error();
   runtime::Node node(**context, "goshawk_fly");
   if (auto free = check_domain_is_free(**context, node, *domain); !free) return free.error();
+  auto recorder = start_recorder(options, p, *domain);
+  if (!recorder) return recorder.error();
   auto launch =
       LaunchProcess::start(launch_arguments(options, p), *domain, p.folder + "/logs/launch.log");
   if (!launch) return launch.error();
   Flight flight(options, p, node, *std::move(launch));
   const FlightOutcome outcome = flight.fly();
+  if (*recorder) (*recorder)->stop();
   const Json summary = summary_json(outcome, flight.record(), p.folder);
   if (auto written = write_flight(p.folder, summary, flight.record(), p.map, p.config.map.radius_m);
       !written) {

@@ -19,6 +19,7 @@ struct FlyOptions {
   std::string folder;
   double timeout_s = 120.0;
   std::vector<std::string> stage_parameters;  // node:name:=value
+  bool no_record = false;
   bool json = false;
 
   void add_to(CLI::App& app);

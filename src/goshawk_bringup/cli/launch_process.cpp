@@ -69,8 +69,15 @@ Result<int> private_domain() {
 
 Result<LaunchProcess> LaunchProcess::start(const Arguments& launch_arguments, int domain,
                                            const std::string& output_file) {
-  Arguments command{install_prefix() + "/bin/goshawk", "launch", "--stop-with-parent"};
-  command.insert(command.end(), launch_arguments.begin(), launch_arguments.end());
+  Arguments verb{"launch", "--stop-with-parent"};
+  verb.insert(verb.end(), launch_arguments.begin(), launch_arguments.end());
+  return start_verb(verb, domain, output_file);
+}
+
+Result<LaunchProcess> LaunchProcess::start_verb(const Arguments& verb, int domain,
+                                                const std::string& output_file) {
+  Arguments command{install_prefix() + "/bin/goshawk"};
+  command.insert(command.end(), verb.begin(), verb.end());
   auto variables = environment(domain);
   auto argv = pointers_to(command);
   auto envp = pointers_to(variables);

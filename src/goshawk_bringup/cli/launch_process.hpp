@@ -13,10 +13,13 @@ namespace goshawk::cli {
 /// this machine works in, held until this process ends.
 Result<int> private_domain();
 
-/// A `goshawk launch` as a child of this process, in a process group of its own.
+/// A `goshawk` verb as a child of this process, in a process group of its own.
 class LaunchProcess {
  public:
-  /// @param output_file where launch's own words go
+  /// @param output_file where its own words go
+  static Result<LaunchProcess> start_verb(const Arguments& verb, int domain,
+                                          const std::string& output_file);
+  /// `goshawk launch`, which stops when this process ends.
   static Result<LaunchProcess> start(const Arguments& launch_arguments, int domain,
                                      const std::string& output_file);
   LaunchProcess(LaunchProcess&& other) noexcept : pid_(std::exchange(other.pid_, -1)) {}

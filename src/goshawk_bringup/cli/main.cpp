@@ -7,6 +7,7 @@
 #include "goshawk/introspection/node_command.hpp"
 #include "goshawk/introspection/param_command.hpp"
 #include "goshawk/introspection/topic_command.hpp"
+#include "goshawk/recording/commands.hpp"
 #include "goshawk/runtime/parameters.hpp"
 #include "verbs.hpp"
 
@@ -29,8 +30,11 @@ constexpr Verb kVerbs[] = {
      &cli::check_command},
     {"world", "make a world, or convert a map", &cli::world_command},
     {"launch", "start what a launch file lists, supervised, until Ctrl-C", &cli::launch_command},
+    {"view", "look at a flight, or live with --live, in a browser", &cli::view_command},
     {"run", "start one component: goshawk run COMPONENT --ros-args ...", &cli::run_command},
     {"bench", "measure plans over DDS, or a stage beside its rivals", &cli::bench_command},
+    {"record", "record topics to an MCAP file, until Ctrl-C", &recording::record_command},
+    {"replay", "play a recording over DDS, or list what is in it", &recording::replay_command},
     {"topic", "list, info, echo, hz, delay, bw, pub",
      [](const cli::Arguments& a) { return introspection::topic_command(a); }},
     {"node", "list", [](const cli::Arguments& a) { return introspection::node_command(a); }},

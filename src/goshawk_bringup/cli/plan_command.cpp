@@ -3,6 +3,7 @@
 
 #include "folders.hpp"
 #include "goshawk/flight_report/files.hpp"
+#include "goshawk/flight_report/page.hpp"
 #include "map_options.hpp"
 #include "plan_json.hpp"
 #include "verbs.hpp"
@@ -63,7 +64,8 @@ Status save(const Plan& plan, const LoadedMap& map, const Limits& limits,
   leg.corridor = plan.corridor->polytopes;
   leg.trajectory = plan.solution->trajectory;
   flight.legs.push_back(std::move(leg));
-  return flight_report::write_flight_folder(flight, folder);
+  if (auto drawn = flight_report::write_flight_folder(flight, folder); !drawn) return drawn;
+  return flight_report::write_flight_page(flight, page_template(), folder + "/flight.html");
 }
 
 int run(const Options& options, const std::string& map_file) {

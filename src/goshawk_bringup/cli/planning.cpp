@@ -76,13 +76,16 @@ void Planner::set_map(const LoadedMap& map) {
 Plan Planner::plan(const FlatState& start, const FlatState& goal, const Limits& limits,
                    const std::vector<Vec3>& other_goals_map) {
   Plan plan;
+  plan.start = start;
+  plan.goal = goal;
+  plan.limits = limits;
   std::vector<Vec3> goals_map = {goal.position};
   goals_map.insert(goals_map.end(), other_goals_map.begin(), other_goals_map.end());
-  plan.outcome = run(start, goal, goals_map, limits, plan);
+  plan.outcome = run(start, goals_map, limits, plan);
   return plan;
 }
 
-Status Planner::run(FlatState start, FlatState goal, const std::vector<Vec3>& goals_map,
+Status Planner::run(const FlatState& start, const std::vector<Vec3>& goals_map,
                     const Limits& limits, Plan& plan) {
   if (auto status = limits.check(); !status) return status;
   auto path = run_stage(plan, "path_search", std::string(search_.planner_name()), [&] {
@@ -91,8 +94,8 @@ Status Planner::run(FlatState start, FlatState goal, const std::vector<Vec3>& go
   if (!path) return path.error();
   plan.path = *std::move(path);
   // The search may have moved the ends, or chosen another goal.
-  start.position = plan.path->waypoints_map.front();
-  goal.position = plan.path->waypoints_map.back();
+  plan.start.position = plan.path->waypoints_map.front();
+  plan.goal.position = plan.path->waypoints_map.back();
   const auto raw = raw_->obstacles(grid_->inflation_m);
   auto corridor = run_stage(plan, "corridor_builder", std::string(builder_.implementation()),
                             [&] { return builder_.build(*grid_, plan.path->waypoints_map, &raw); });
@@ -100,7 +103,7 @@ Status Planner::run(FlatState start, FlatState goal, const std::vector<Vec3>& go
   plan.corridor = *std::move(corridor);
   auto solution =
       run_stage(plan, "trajectory_optimizer", std::string(optimizer_.implementation()),
-                [&] { return optimizer_.optimise(*plan.corridor, start, goal, limits); });
+                [&] { return optimizer_.optimise(*plan.corridor, plan.start, plan.goal, limits); });
   if (!solution) return solution.error();
   plan.solution = *std::move(solution);
   return success();

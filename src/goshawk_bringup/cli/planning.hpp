@@ -39,6 +39,8 @@ Result<LoadedMap> load_map(const map_server::Config& config);
 
 /// What came out of each stage, as far as it went.
 struct Plan {
+  FlatState start, goal;  // what the trajectory was asked to begin and end with
+  Limits limits;
   std::vector<StageTime> stages;
   std::optional<path_search::PlannedPath> path;
   std::optional<Corridor> corridor;
@@ -61,7 +63,7 @@ class Planner {
       : search_(std::move(search)),
         builder_(std::move(builder)),
         optimizer_(std::move(optimizer)) {}
-  Status run(FlatState start, FlatState goal, const std::vector<Vec3>& goals_map,
+  Status run(const FlatState& start, const std::vector<Vec3>& goals_map,
              const Limits& limits, Plan& plan);
 
   path_search::PathSearch search_;

@@ -1,5 +1,6 @@
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "goshawk/conversions/plan.hpp"
 #include "goshawk/conversions/vehicle.hpp"
@@ -21,8 +22,8 @@ double seconds(std::int64_t ns) {
   return double(ns) * 1e-9;
 }
 
-/// octomap_binary, committed_trajectory, odom -> stage_report: each committed trajectory's verdict
-/// when it comes, the flown leg's when it is over, and a contact at once.
+/// octomap_binary, committed_trajectory, odom or odom_true -> stage_report: each committed
+/// trajectory's verdict when it comes, the flown leg's when it is over, and a contact at once.
 class FlightCheckComponent : public Component {
  public:
   explicit FlightCheckComponent(Node& node)
@@ -36,7 +37,15 @@ class FlightCheckComponent : public Component {
         [this](const msg::CommittedTrajectory& m, const MessageInfo& info) { on_commit(m, info); });
     node.subscribe<nav_msgs::msg::Odometry>(
         "odom", Qos::best_effort(100),
-        [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) { on_odometry(m); });
+        [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) {
+          if (!knows_truth_) on_odometry(m);
+        });
+    node.subscribe<nav_msgs::msg::Odometry>(
+        "odom_true", Qos::best_effort(100),
+        [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) {
+          if (!std::exchange(knows_truth_, true)) track_.clear();
+          on_odometry(m);
+        });
     node.every(config_.period_s, [this] { judge_flown(); });
     reporter_.ready("judges a body of reach " + std::to_string(config_.body.reach_m()) + " m");
   }
@@ -146,6 +155,7 @@ class FlightCheckComponent : public Component {
   std::vector<Sample> track_;  // not judged yet, and the last that was
   std::optional<Leg> leg_;
   bool touching_ = false;
+  bool knows_truth_ = false;  // a simulator with noisy sensors tells the truth beside them
 };
 
 }  // namespace

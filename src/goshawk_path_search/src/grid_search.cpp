@@ -24,6 +24,17 @@ constexpr int kExpansionsBetweenLooks = 1024;  // at the clock and the stop toke
 constexpr int kFewAtFirst = 1;
 constexpr int kFewLater = 8;
 
+// By direction_of().
+constexpr BlockMask kStraightMoves = 0x415410;
+constexpr BlockMask kDiagonalMoves = 0x2aa8aaa;
+
+// The queue hands out the newest of equals, so the moves that the canonical order wants first,
+// those along most axes, are made last.
+int next_in_order(BlockMask moves) {
+  const BlockMask straight = moves & kStraightMoves, diagonal = moves & kDiagonalMoves;
+  return std::countr_zero(straight != 0 ? straight : diagonal != 0 ? diagonal : moves);
+}
+
 bool at_most(int count, BlockMask moves) {
   for (int k = 0; k < count; ++k) moves &= moves - 1;
   return moves == 0;
@@ -211,8 +222,9 @@ void GridSearch<Heuristic, kJumps>::expand(Node node, BlockMask moves) {
       too_long_ |= !reached_;
     }
   }
-  for (; now != 0; now &= now - 1) {
-    const int d = std::countr_zero(now);
+  while (now != 0) {
+    const int d = kJumps ? next_in_order(now) : std::countr_zero(now);
+    now &= ~(BlockMask{1} << d);
     const Move& move = kMoves[std::size_t(d)];
     const int count = kJumps ? jump(move, at, block) : 1;
     if (count <= 0) continue;

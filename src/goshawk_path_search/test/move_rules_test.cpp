@@ -39,6 +39,9 @@ void expect_sound(CornerRule rule, int direction, const BitGrid& block) {
   }
   BitGrid without_center = block;
   if (squeeze) without_center.set(center, true);
+  // Under no-squeeze a move past the centre needs it free, so it is left in the block; a way over
+  // it is then as long as the one that is judged.
+  const auto around = reference::distances(without_center, before, squeeze);
   const BlockMask moves = move_rules(rule).successors(direction, blocked_bits(block));
   for (int d = 0; d < kDirections; ++d) {
     if (d == kNoDirection) continue;
@@ -49,9 +52,6 @@ void expect_sound(CornerRule rule, int direction, const BitGrid& block) {
       ASSERT_FALSE(made);
       continue;
     }
-    // Under no-squeeze a move past the centre needs it free, so it is left in the block; a way
-    // over it is then as long as the one that is judged.
-    const auto around = reference::distances(without_center, before, squeeze);
     const double other = reference::distance_to(around, block.size(), target);
     const double through = length_of(direction) + length_of(d);
     if (!made) {
@@ -72,6 +72,43 @@ TEST(MoveRules, PruneOnlyWhatAnotherWayInTheBlockReachesAndAllThatIsReachedSoone
         if (d != kNoDirection) expect_sound(rule, d, block);
         if (HasFatalFailure()) FAIL() << "block " << n;
       }
+    }
+  }
+}
+
+// The voxels that occur in any bypass of any target.
+BlockMask relevant_voxels(CornerRule rule, int direction) {
+  BlockMask relevant = 0;
+  for (int t = 0; t < kDirections; ++t) {
+    if (t == kNoDirection) continue;
+    for (const BlockMask cells : bypasses(rule, direction, t)) relevant |= cells;
+  }
+  return relevant;
+}
+
+BitGrid block_of(BlockMask blocked) {
+  BitGrid block({3, 3, 3}, true);
+  for (int d = 0; d < kDirections; ++d) {
+    if ((blocked >> d & 1U) != 0) block.set(step_of(d) + Index3{1, 1, 1}, true);
+  }
+  return block;
+}
+
+// Every state of every voxel that can force a neighbour, for all 26 arrivals and both rules; the
+// other voxels once free and once by chance.
+TEST(MoveRules, AreSoundInEveryNeighbourhoodThatMatters) {
+  Random random(16);
+  for (const CornerRule rule : kRules) {
+    for (int d = 0; d < kDirections; ++d) {
+      if (d == kNoDirection) continue;
+      const BlockMask relevant = relevant_voxels(rule, d);
+      BlockMask blocked = 0;
+      do {
+        expect_sound(rule, d, block_of(blocked));
+        expect_sound(rule, d, block_of(blocked | (BlockMask(random.next()) & kAll & ~relevant)));
+        if (HasFatalFailure()) FAIL() << "arrival " << d << ", blocked " << blocked;
+        blocked = (blocked - relevant) & relevant;  // the next subset
+      } while (blocked != 0);
     }
   }
 }

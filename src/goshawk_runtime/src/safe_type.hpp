@@ -2,6 +2,7 @@
 
 #include <fastdds/dds/topic/TopicDataType.hpp>
 
+#include <cstring>
 #include <exception>
 
 namespace goshawk::runtime {
@@ -16,6 +17,9 @@ class SafeType : public PubSubType {
   using Payload = eprosima::fastrtps::rtps::SerializedPayload_t;
 
   bool serialize(void* data, Payload* payload) override {
+    // Padding is left as it was: bytes of other messages would go out, and the same message would
+    // not have the same bytes twice.
+    std::memset(payload->data, 0, payload->max_size);
     try {
       return PubSubType::serialize(data, payload);
     } catch (const std::exception&) {

@@ -39,8 +39,8 @@ std::vector<std::string> split_names(std::string_view names) {
 }
 
 void Node::Impl::set_time(std::int64_t now_ns) {
-  // A simulation that began anew: timers count from there.
-  if (now_ns < time.now_ns) {
+  // The first time of all, or a simulation that began anew: timers count from there.
+  if (time.now_ns == 0 || now_ns < time.now_ns) {
     for (auto& timer : timers) timer.next_ns = now_ns + timer.period_ns;
   }
   time.now_ns = now_ns;

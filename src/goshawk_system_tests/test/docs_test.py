@@ -9,7 +9,7 @@ from harness import SOURCE, SystemTest, note
 
 PAGES = [SOURCE / "README.md", *sorted((SOURCE / "docs").glob("*.md"))]
 # What runs until it is stopped: it must live this long.
-ENDLESS = re.compile(r"goshawk (launch|run|topic (echo|hz|delay|bw))\b")
+ENDLESS = re.compile(r"goshawk (launch|run|view(?!.*--check)|topic (echo|hz|delay|bw))\b")
 LIVES_S = 3.0
 
 
@@ -74,7 +74,7 @@ class Commands(SystemTest):
         """A page's domain is an example. Tools look at the live stages; what starts stages does
         so in a domain of its own."""
         environment = {k: v for k, v in exports.items() if k != "ROS_DOMAIN_ID"}
-        if re.search(r"goshawk (launch|run|fly|bench)", name):
+        if re.search(r"goshawk (launch|run|fly|bench|replay)", name):
             domain = harness.Domain()
             self.addCleanup(domain.close)
             environment["ROS_DOMAIN_ID"] = str(domain.number)

@@ -44,14 +44,8 @@ class MoveRules {
   BlockMask successors(int direction, BlockMask blocked) const {
     Lanes sum = base_[std::size_t(direction)];
     const auto& rows = table_[std::size_t(direction)];
-    for (std::size_t r = 0; r < 9; ++r) {
-      const Lanes& lanes = rows[r][(blocked >> (3 * r)) & 7U];
-      sum.low |= lanes.low;
-      sum.high |= lanes.high;
-    }
-    const auto invalid = BlockMask(sum.low);
-    const auto needed = BlockMask(sum.low >> 32) & BlockMask(sum.high) & BlockMask(sum.high >> 32);
-    return needed & ~invalid;
+    for (std::size_t r = 0; r < 9; ++r) sum |= rows[r][(blocked >> (3 * r)) & 7U];
+    return sum[1] & sum[2] & sum[3] & ~sum[0];
   }
 
   /// The same for kNoDirection, without a table: every move that the corner rule allows.
@@ -79,12 +73,8 @@ class MoveRules {
 
  private:
   // Four masks of targets: not a valid move; bypass 1, 2, 3 is cut by a blocked voxel. A target
-  // is needed where all of its bypasses are cut.
-  struct Lanes {
-    std::uint64_t low = 0;
-    std::uint64_t high = 0;
-    void set(int lane, int target);
-  };
+  // is needed where all of its bypasses are cut. One vector register where the machine has them.
+  using Lanes [[gnu::vector_size(16)]] = BlockMask;
 
   void add_move(CornerRule rule, int direction, int target);
   void block(int direction, BlockMask cells, int lane, int target);

@@ -1,0 +1,136 @@
+#include "player.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "qos_profiles.hpp"
+#include "restamp.hpp"
+#include "verb.hpp"
+
+namespace goshawk::recording {
+namespace {
+
+constexpr double kSlice_s = 0.05;    // how often a wait looks for Ctrl-C
+constexpr double kSettled_s = 0.7;   // nobody new for this long: all readers are found
+constexpr double kClockPeriod_s = 0.01;
+
+std::int64_t steady_ns() {
+  return std::chrono::steady_clock::now().time_since_epoch().count();
+}
+
+bool is_large(const std::string& type) {
+  return type.ends_with("/VoxelGrid") || type.ends_with("/Octomap") ||
+         type.ends_with("/PointCloud2");
+}
+
+}  // namespace
+
+Player::Player(runtime::Node& node, Reader& reader, const std::set<std::uint16_t>& channels,
+               PlayerOptions options)
+    : node_(node), reader_(reader), options_(std::move(options)), channels_(channels) {
+  for (const auto id : channels) {
+    const Channel& channel = reader.channels().at(id);
+    const std::string type = reader.schema_of(channel)->name;
+    const auto profiles = channel.metadata.find(kQosKey);
+    runtime::Qos qos =
+        offered_by_player(profiles == channel.metadata.end() ? "" : profiles->second);
+    // How many its writer kept is not recorded: the newest map is all that counts of maps.
+    if (qos.transient_local && is_large(type)) qos.depth = 1;
+    const auto known = introspection::find_type(type);
+    tracks_[id] = {node.advertise_raw(options_.prefix + channel.topic,
+                                      runtime::raw_message_type(runtime::wire_type_name(type)), qos),
+                   known ? *known : nullptr, qos.transient_local};
+  }
+  if (options_.clock) {
+    clock_ = node.advertise_raw("/clock",
+                                runtime::raw_message_type("rosgraph_msgs::msg::dds_::Clock_"),
+                                runtime::Qos::best_effort());
+    node.every(kClockPeriod_s, [this] { publish_clock(); });
+  }
+}
+
+void Player::wait_for_readers() {
+  const auto begin = steady_ns();
+  auto changed = begin;
+  int known = -1;
+  const auto since = [](std::int64_t ns) { return double(steady_ns() - ns) * 1e-9; };
+  while (!Interruptible::interrupted() && since(begin) < options_.wait_s &&
+         since(changed) < kSettled_s) {
+    int now = 0;
+    for (const auto& [id, track] : tracks_) now += track.publisher.matched();
+    if (now != known) changed = steady_ns();
+    known = now;
+    node_.spin_some(kSlice_s);
+  }
+}
+
+Status Player::play() {
+  from_ns_ = reader_.start_ns() + std::uint64_t(options_.start_offset_s * 1e9);
+  if (auto status = publish_latched_before(from_ns_); !status) return status;
+  begin_ns_ = steady_ns();
+  playing_ = true;
+  Status published = success();
+  const auto read = reader_.read({.from_ns = from_ns_, .channels = channels_},
+                                 [&](const MessageView& m) {
+    wait_until(begin_ns_ + std::int64_t(double(m.log_time_ns - from_ns_) / options_.rate));
+    if (Interruptible::interrupted()) return false;
+    published = publish(tracks_.at(m.channel_id), m.data, m.log_time_ns);
+    return published.ok();
+  });
+  playing_ = false;
+  return published ? read : published;
+}
+
+// Who starts in the middle finds the map and what else was latched as it was then.
+Status Player::publish_latched_before(std::uint64_t from_ns) {
+  if (from_ns <= reader_.start_ns()) return success();
+  std::set<std::uint16_t> latched;
+  for (const auto& [id, track] : tracks_) {
+    if (track.transient_local) latched.insert(id);
+  }
+  if (latched.empty()) return success();
+  Status published = success();
+  const auto read = reader_.read({.to_ns = from_ns - 1, .channels = latched},
+                                 [&](const MessageView& m) {
+    published = publish(tracks_.at(m.channel_id), m.data, m.log_time_ns);
+    return published.ok() && !Interruptible::interrupted();
+  });
+  return published ? read : published;
+}
+
+Status Player::publish(Track& track, View data, std::uint64_t log_time_ns) {
+  message_.assign(data.begin(), data.end());
+  if (options_.restamp && track.type != nullptr) {
+    const std::int64_t shift_ns = node_.now_ns() - std::int64_t(log_time_ns);
+    if (auto status = shift_stamps(*track.type, message_, shift_ns); !status) return status;
+  }
+  ++published_;
+  return track.publisher.publish_raw(&message_);
+}
+
+void Player::wait_until(std::int64_t until_ns) {
+  for (;;) {
+    const double left_s = double(until_ns - steady_ns()) * 1e-9;
+    if (left_s <= 0.0 || Interruptible::interrupted()) return;
+    node_.spin_some(std::min(left_s, kSlice_s));
+  }
+}
+
+void Player::publish_clock() {
+  if (!playing_) return;
+  const auto passed = std::uint64_t(double(steady_ns() - begin_ns_) * options_.rate);
+  const std::uint64_t now_ns = from_ns_ + passed;
+  Bytes bytes = {0, 1, 0, 0};  // little-endian CDR of builtin_interfaces/Time
+  const auto sec = std::uint32_t(now_ns / 1'000'000'000);
+  const auto nanosec = std::uint32_t(now_ns % 1'000'000'000);
+  for (const std::uint32_t value : {sec, nanosec}) {
+    for (int byte = 0; byte < 4; ++byte) bytes.push_back((unsigned char)(value >> (8 * byte)));
+  }
+  (void)clock_.publish_raw(&bytes);  // best effort: the next one comes in a moment
+}
+
+void Player::finish() {
+  for (const auto& [id, track] : tracks_) (void)track.publisher.wait_acknowledged(1.0);
+}
+
+}  // namespace goshawk::recording

@@ -1,0 +1,133 @@
+#include <signal.h>
+#include <sys/prctl.h>
+
+#include <cstdio>
+#include <ctime>
+
+#include "goshawk/recording/commands.hpp"
+#include "recorder.hpp"
+#include "verb.hpp"
+
+namespace goshawk::recording {
+namespace {
+
+constexpr double kLookPeriod_s = 0.05;  // for new topics
+constexpr double kFlushPeriod_s = 1.0;  // what kill -9 may cost
+
+struct Options {
+  std::vector<std::string> topics;
+  std::vector<std::string> exclude;
+  std::string file;
+  bool overwrite = false;
+  double duration_s = 0.0;  // 0: until Ctrl-C
+  bool stop_with_parent = false;
+  bool json = false;
+};
+
+std::string dated_name() {
+  char name[64];
+  const std::time_t now = std::time(nullptr);
+  std::strftime(name, sizeof name, "recording_%Y-%m-%d_%H-%M-%S.mcap", std::localtime(&now));
+  return name;
+}
+
+void add_options(CLI::App& app, Options& o) {
+  app.add_option("topics", o.topics, "names, or beginnings like /uav1/* (default: all)");
+  app.add_option("-o,--output", o.file, "file (default recording_DATE.mcap)");
+  app.add_option("-x,--exclude", o.exclude, "topic not to record; may repeat")->expected(1);
+  app.add_flag("--overwrite", o.overwrite, "replace the file where it exists");
+  app.add_option("-d,--duration", o.duration_s, "[s] end by itself after this time")
+      ->check(CLI::Range(0.0, 1e9));
+  app.add_flag("--stop-with-parent", o.stop_with_parent,
+               "end as on Ctrl-C when the process that started this one ends");
+  app.add_flag("--json", o.json, "print one JSON object at the end (docs/cli.md)");
+  app.footer(
+      "Records until Ctrl-C. What is recorded is in the file within a second, and stays readable\n"
+      "whatever happens to this process. Foxglove and ROS 2's tools open the file.");
+}
+
+Status complete_names(std::vector<std::string>& names) {
+  for (auto& name : names) {
+    auto full = full_topic_name(name);
+    if (!full) return full.error();
+    name = *full;
+  }
+  return success();
+}
+
+double megabytes(std::uint64_t bytes) {
+  return double(bytes) * 1e-6;
+}
+
+void print_end(const Recorder& recorder, const Options& o, double seconds) {
+  const auto counts = recorder.counts();
+  const auto& state = recorder.state();
+  if (o.json) {
+    Json topics = Json::array();
+    for (const auto& [name, count] : recorder.received()) {
+      topics.push_back({{"name", name}, {"received", count}});
+    }
+    return print_json({{"ok", state.ok()},
+                       {"code", to_string(state.code())},
+                       {"message", state ? "" : state.error().message},
+                       {"file", o.file},
+                       {"messages", counts.messages},
+                       {"lost", counts.lost},
+                       {"bytes", counts.bytes},
+                       {"duration_s", seconds},
+                       {"topics", topics}});
+  }
+  std::printf("%s: %llu messages of %zu topics, %.1f MB, %.1f s\n", o.file.c_str(),
+              (unsigned long long)counts.messages, recorder.received().size(),
+              megabytes(counts.bytes), seconds);
+  if (!state) {
+    say("record", std::string(to_string(state.code())) + ": " + state.error().message +
+                      ". Recording stopped; " + std::to_string(counts.messages) +
+                      " messages before are in the file and readable, the last " +
+                      std::to_string(counts.lost) + " are not");
+  }
+}
+
+int record(const Options& o) {
+  const Interruptible interruptible;
+  if (o.stop_with_parent) prctl(PR_SET_PDEATHSIG, SIGINT);
+  auto sink = create_file(o.file, o.overwrite);
+  if (!sink) return report_failure("record", sink.error(), o.json, kNotDone);
+  auto writer = Writer::create(*std::move(sink));
+  if (!writer) return report_failure("record", writer.error(), o.json, kNotDone);
+  auto context = join_domain();
+  if (!context) return report_failure("record", context.error(), o.json, kNotDone);
+  runtime::Node node(**context, "goshawk_record");
+  Recorder recorder(**context, node, *std::move(writer), {o.topics, o.exclude});
+  say("record", "recording to " + o.file + (o.duration_s > 0.0 ? "" : ", until Ctrl-C"));
+  node.every(kLookPeriod_s, [&] { recorder.join(); });
+  node.every(kFlushPeriod_s, [&] { (void)recorder.flush(); });
+  const auto begin = node.now_ns();
+  const auto seconds = [&] { return double(node.now_ns() - begin) * 1e-9; };
+  while (recorder.state() && !Interruptible::interrupted() &&
+         (o.duration_s <= 0.0 || seconds() < o.duration_s)) {
+    node.spin_some(kLookPeriod_s);
+  }
+  for (int k = 0; k < 4 && recorder.state(); ++k) node.spin_some(0.0);  // what has come already
+  const auto closed = recorder.close();
+  print_end(recorder, o, seconds());
+  return closed ? kDone : kNotDone;
+}
+
+}  // namespace
+
+int record_command(const std::vector<std::string>& arguments) {
+  CLI::App app("Record topics of the domain to an MCAP file.", "goshawk record");
+  Options o;
+  add_options(app, o);
+  if (const auto status = parse(app, arguments)) return *status;
+  for (auto* names : {&o.topics, &o.exclude}) {
+    if (auto fault = complete_names(*names); !fault) {
+      return report_failure("record", fault.error(), o.json, kWrongCall);
+    }
+  }
+  if (o.file.empty()) o.file = dated_name();
+  return record(o);
+}
+
+}  // namespace goshawk::recording

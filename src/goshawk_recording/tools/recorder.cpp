@@ -1,0 +1,119 @@
+#include "recorder.hpp"
+
+#include <algorithm>
+
+#include "goshawk/introspection/schema.hpp"
+#include "qos_profiles.hpp"
+#include "verb.hpp"
+
+namespace goshawk::recording {
+namespace {
+
+// Messages that may wait while the disk is busy. Maps and clouds are few and large.
+constexpr int kSmallDepth = 1000;
+constexpr int kLargeDepth = 20;
+
+int depth_of(const std::string& type) {
+  for (const char* large : {"VoxelGrid", "Octomap", "PointCloud2", "Image", "OccupancyGrid"}) {
+    if (type.ends_with(std::string("/") + large)) return kLargeDepth;
+  }
+  return kSmallDepth;
+}
+
+}  // namespace
+
+Recorder::Recorder(runtime::Context& context, runtime::Node& node, Writer writer,
+                   RecorderOptions options)
+    : context_(context), node_(node), writer_(std::move(writer)), options_(std::move(options)) {}
+
+bool Recorder::wanted(const std::string& topic) const {
+  if (!topic.starts_with('/')) return false;  // no topic of ROS: a service, or discovery's own
+  if (matches(options_.exclude, topic)) return false;
+  return options_.topics.empty() || matches(options_.topics, topic);
+}
+
+void Recorder::join() {
+  std::map<std::string, Endpoints> fresh;
+  for (const auto& endpoint : context_.endpoints()) {
+    if (!endpoint.writer || !wanted(endpoint.topic)) continue;
+    const auto track = tracks_.find(endpoint.topic);
+    if (track != tracks_.end()) {
+      check_late(track->second, endpoint);
+    } else {
+      fresh[endpoint.topic].push_back(endpoint);
+    }
+  }
+  for (const auto& [topic, writers] : fresh) join(topic, writers);
+}
+
+// A reader is served only by writers that offer what it asks for, of its type.
+void Recorder::check_late(const Track& track, const runtime::EndpointInfo& writer) {
+  if (writer.type != track.type) {
+    say_once(writer.topic + " is recorded as " + track.type + "; somebody writes " + writer.type +
+             " on it as well, which is not recorded");
+  } else if (track.reliable > writer.reliable || track.transient_local > writer.transient_local) {
+    say_once("a writer of " + writer.topic +
+             " that came later offers less than those before: it is not recorded");
+  }
+}
+
+std::uint16_t Recorder::schema(const std::string& type) {
+  const auto found = schemas_.find(type);
+  if (found != schemas_.end()) return found->second;
+  const auto definition = introspection::ros_msg_definition(type);
+  if (!definition) {
+    say_once("no definition of " + type +
+             " is known here: its messages are recorded, but others cannot look into them");
+  }
+  return schemas_[type] = writer_.add_schema(type, definition ? "ros2msg" : "",
+                                             definition ? *definition : "");
+}
+
+void Recorder::join(const std::string& topic, const Endpoints& writers) {
+  Track track{writers.front().type, true, true};
+  Endpoints same;
+  for (const auto& writer : writers) {
+    if (writer.type != track.type) continue;
+    same.push_back(writer);
+    track.reliable = track.reliable && writer.reliable;
+    track.transient_local = track.transient_local && writer.transient_local;
+  }
+  tracks_[topic] = track;
+  for (const auto& writer : writers) check_late(track, writer);
+  Channel channel{.schema_id = schema(track.type), .topic = topic, .message_encoding = "cdr"};
+  channel.metadata[kQosKey] = to_profiles(same);
+  const std::uint16_t id = writer_.add_channel(std::move(channel));
+  sequences_.resize(std::size_t(id) + 1);
+  received_[topic] = 0;
+  const runtime::Qos qos{track.reliable, track.transient_local, depth_of(track.type)};
+  node_.subscribe_raw(topic, runtime::raw_message_type(runtime::wire_type_name(track.type)), qos,
+                      [this, id, topic](const void* data, const runtime::MessageInfo& info) {
+                        take(id, topic, *static_cast<const Bytes*>(data), info.received_ns);
+                      });
+}
+
+void Recorder::take(std::uint16_t channel, const std::string& topic, View bytes,
+                    std::int64_t time_ns) {
+  ++received_[topic];
+  const auto time = std::uint64_t(time_ns);
+  const auto status = writer_.write({channel, sequences_[channel]++, time, time, bytes});
+  if (state_ && !status) state_ = status;
+}
+
+Status Recorder::flush() {
+  const auto status = writer_.flush();
+  if (state_ && !status) state_ = status;
+  return state_;
+}
+
+Status Recorder::close() {
+  const auto status = writer_.close();
+  if (state_ && !status) state_ = status;
+  return state_;
+}
+
+void Recorder::say_once(const std::string& sentence) {
+  if (said_.insert(sentence).second) say("record", sentence);
+}
+
+}  // namespace goshawk::recording

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <cstdint>
+
+#include "goshawk/core/result.hpp"
+#include "goshawk/introspection/schema.hpp"
+#include "goshawk/recording/format.hpp"
+
+namespace goshawk::recording {
+
+/// Adds shift_ns to every builtin_interfaces/Time in a CDR message, in place; a stamp of zero means
+/// none and stays. All other bytes stay as they are.
+/// @return invalid_input where the bytes are no such message; some stamps may be shifted then
+Status shift_stamps(const introspection::Type& type, Bytes& message, std::int64_t shift_ns);
+
+}  // namespace goshawk::recording

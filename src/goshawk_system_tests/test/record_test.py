@@ -1,0 +1,242 @@
+#!/usr/bin/python3
+"""Recordings of a live stack, what is left of them when things go wrong, and stages that are fed
+from a recording."""
+
+import json
+import os
+import signal
+import time
+
+import harness
+from harness import GOSHAWK, Launch, SystemTest, until
+
+PLANNING = ["map_server", "path_search", "corridor_builder", "trajectory_optimizer"]
+INPUTS = {
+    "path_search": (["map/voxels", "map/voxels/updates", "plan_request"], "/path"),
+    "corridor_builder": (["map/voxels", "map/voxels/updates", "path"], "/corridor"),
+    "trajectory_optimizer": (["corridor"], "/trajectory"),
+}
+GOALS = [(3, 8, 2), (3.5, 6.1, 1.1), (3, 4, 1.5), (0.5, 0.5, 0.5)]
+
+
+class RecordingCase(SystemTest):
+    def record(self, name, *options):
+        file = self.sandbox.folder / name
+        process = self.sandbox.start(GOSHAWK, "record", "-o", file, "--json", *options)
+        self.assertTrue(until(lambda: "recording to" in process.err(), 10), str(process.outcome()))
+        return file, process
+
+    def contents(self, file):
+        outcome = self.sandbox.goshawk("replay", file, "--list", "--json")
+        self.assertEqual(outcome.status, 0, str(outcome))
+        listed = self.json_object(outcome)
+        listed["counts"] = {t["name"]: t["messages"] for t in listed["topics"]}
+        return listed
+
+    def messages(self, file, *topics):
+        outcome = self.sandbox.goshawk("replay", file, "--print", "--topics", *topics)
+        self.assertEqual(outcome.status, 0, str(outcome))
+        return [json.loads(line) for line in outcome.out.splitlines()]
+
+    def pub(self, topic, kind, message, *options):
+        return self.sandbox.start(GOSHAWK, "topic", "pub", topic, kind, json.dumps(message),
+                                  *options)
+
+
+class Recording(RecordingCase):
+    """Without a stack: what is written by `goshawk topic pub` is in the file."""
+
+    def test_topics_that_come_later_are_joined_and_all_is_there(self):
+        file, process = self.record("a.mcap")
+        first = self.pub("first", "std_msgs/msg/String", {"data": "one"}, "-r", "50", "-n", "60")
+        self.assertEqual(first.wait(20), 0, str(first.outcome()))
+        second = self.pub("uav1/second", "geometry_msgs/msg/Point", {"x": 2.5}, "-n", "3", "-r",
+                          "20")
+        self.assertEqual(second.wait(20), 0, str(second.outcome()))
+        status, _ = process.stop()
+        self.assertEqual(status, 0)
+        end = json.loads(process.out())
+        listed = self.contents(file)
+        self.assertTrue(listed["whole"], listed)
+        self.assertEqual(listed["counts"], {"/first": 60, "/uav1/second": 3})
+        self.assertEqual((end["messages"], end["lost"]), (63, 0))
+        self.assertEqual(end["bytes"], file.stat().st_size)
+        values = [m["value"] for m in self.messages(file, "first")]
+        self.assertEqual(values, [{"data": "one"}] * 60)
+        self.assertEqual([t["durability"] for t in listed["topics"]], ["transient_local"] * 2)
+
+    def test_kill_nine_costs_no_more_than_a_second(self):
+        file, process = self.record("b.mcap")
+        writer = self.pub("count", "std_msgs/msg/String", {"data": "x" * 100}, "-r", "100")
+        self.assertTrue(until(lambda: file.stat().st_size > 1500, 20), "nothing in the file")
+        time.sleep(2.5)
+        process.stop(signal.SIGKILL)
+        killed = time.time()
+        writer.stop()
+        listed = self.contents(file)
+        self.assertFalse(listed["whole"])
+        self.assertIn("ends in the middle", listed["complaints"][0])
+        last = self.messages(file, "count")[-1]["log_time_s"]
+        harness.note(f"kill -9 cost {killed - last:.2f} s, {listed['messages']} messages are left")
+        self.assertLess(killed - last, 1.6)  # a second, and what a busy machine adds
+        self.assertGreater(listed["messages"], 100)
+
+    def test_a_file_that_may_grow_no_more_stays_readable(self):
+        file = self.sandbox.folder / "c.mcap"
+        process = self.sandbox.start("/bin/bash", "-c", 'ulimit -f 64; exec "$@"', "-", GOSHAWK,
+                                     "record", "-o", file, "--json")
+        until(lambda: "recording to" in process.err(), 10)
+        # Noise does not pack: each second's chunk is 20 KB of it.
+        noise = [byte - 128 for byte in os.urandom(20000)]
+        writer = self.pub("noise", "octomap_msgs/msg/Octomap", {"data": noise}, "-r", "20")
+        status = process.wait(60)
+        writer.stop()
+        self.assertEqual(status, 1, str(process.outcome()))
+        end = json.loads(process.out())
+        self.assertEqual(end["code"], "io_failed")
+        self.assertIn("c.mcap", end["message"])
+        self.assertGreater(end["lost"], 0)
+        listed = self.contents(file)
+        self.assertEqual(listed["messages"], end["messages"])
+
+    def test_wrong_calls_are_sentences(self):
+        cases = [(["record", "-o", "/nonexistent/a.mcap"], 1, "/nonexistent/a.mcap"),
+                 (["record", "no such topic"], 2, "no such topic"),
+                 (["record", "--duration", "-1"], 2, "duration"),
+                 (["replay", "/nonexistent.mcap"], 1, "/nonexistent.mcap"),
+                 (["replay", "/etc/passwd"], 1, "no MCAP"),
+                 (["replay", "x.mcap", "--rate", "0"], 2, "rate")]
+        for words, status, word in cases:
+            with self.subTest(words=words):
+                outcome = self.sandbox.goshawk(*words, timeout_s=20)
+                self.assert_civil(outcome)
+                self.assertEqual(outcome.status, status, str(outcome))
+                self.assertIn(word, outcome.err + outcome.out)
+        existing = self.sandbox.folder / "mine.mcap"
+        existing.write_bytes(b"precious")
+        outcome = self.sandbox.goshawk("record", "-o", existing)
+        self.assertEqual(outcome.status, 1)
+        self.assertEqual(existing.read_bytes(), b"precious")
+
+
+class Replay(RecordingCase):
+    def setUp(self):
+        super().setUp()
+        self.file, process = self.record("r.mcap")
+        points = [self.pub(f"point{k}", "geometry_msgs/msg/Point", {"x": float(k)}, "-r", "20",
+                           "-n", "40") for k in range(2)]
+        for point in points:
+            self.assertEqual(point.wait(30), 0, str(point.outcome()))
+        process.stop()
+
+    def test_rate_prefix_choice_and_quality_of_service(self):
+        again, process = self.record("again.mcap")
+        outcome = self.sandbox.goshawk("replay", self.file, "--rate", "2", "--prefix", "/old",
+                                       "--topics", "point1", "--clock", "--json")
+        self.assertEqual(outcome.status, 0, str(outcome))
+        process.stop()
+        listed = self.contents(again)
+        self.assertEqual(listed["counts"]["/old/point1"], 40)
+        self.assertEqual({t["durability"] for t in listed["topics"] if t["name"] != "/clock"},
+                         {"transient_local"})
+        self.assertNotIn("/old/point0", listed["counts"])
+        self.assertGreater(listed["counts"]["/clock"], 20)
+        played = self.json_object(outcome)
+        was = self.contents(self.file)["duration_s"]
+        self.assertEqual(played["published"], 40)
+        self.assertLess(played["duration_s"], was)
+        self.assertGreater(played["duration_s"], 0.3 * was)
+
+    def test_a_truncated_file_plays_what_is_readable(self):
+        whole = self.file.read_bytes()
+        cut = self.sandbox.folder / "cut.mcap"
+        cut.write_bytes(whole[:len(whole) // 2])
+        outcome = self.sandbox.goshawk("replay", cut, "--rate", "10", "--json", "--wait", "0")
+        self.assertEqual(outcome.status, 0, str(outcome))
+        self.assertIn("ends in the middle", outcome.err)
+        self.assertGreater(self.json_object(outcome)["published"], 0)
+        self.assertLess(self.json_object(outcome)["published"], 80)
+
+    def test_loop_goes_on_until_it_is_stopped(self):
+        process = self.sandbox.start(GOSHAWK, "replay", self.file, "--loop", "--rate", "50",
+                                     "--json", "--wait", "0")
+        time.sleep(2.0)
+        self.assertTrue(process.alive(), str(process.outcome()))
+        status, _ = process.stop()
+        self.assertEqual(status, 0)
+        self.assertGreater(json.loads(process.out())["published"], 160)
+
+
+def without_times(value):
+    """What a stage may not repeat: when it was published, when the request was asked (moved by
+    --restamp), and how long it took."""
+    if isinstance(value, dict):
+        return {k: without_times(v) for k, v in value.items() if k not in ("stamp", "compute_ns")}
+    if isinstance(value, list):
+        return [without_times(v) for v in value]
+    return value
+
+
+class ReplayedStages(RecordingCase):
+    """Each planning stage alone, fed from a recording, answers as it did in the recording."""
+
+    def launch(self, stages, name, *ros_args):
+        file = self.sandbox.folder / f"{name}.yaml"
+        file.write_text(json.dumps({"stages": [{"component": s} for s in stages]}))
+        reports = self.sandbox.start(GOSHAWK, "topic", "echo", "stage_report", "--json",
+                                     "--timeout", "20")
+        launch = Launch(self.sandbox, file, *ros_args)
+        self.assertTrue(until(lambda: {r["stage"] for r in reports.lines()} >= set(stages), 30),
+                        launch.tails())
+        reports.stop()
+        return launch
+
+    def request(self, number, goal):
+        def state(x, y, z):
+            return {"position": {"x": x, "y": y, "z": z}}
+        now = time.time_ns()
+        message = {"header": {"frame_id": "map", "stamp": {"sec": now // 10**9,
+                                                           "nanosec": now % 10**9}},
+                   "id": number, "start": state(3.0, 0.0, 1.0), "goal": state(*map(float, goal)),
+                   "limits": {"v_max": 2.0, "a_max": 2.0}, "deadline": 10.0}
+        process = self.pub("plan_request", "goshawk_msgs/msg/PlanRequest", message, "--once",
+                           "--timeout", "10")
+        self.assertEqual(process.wait(20), 0, str(process.outcome()))
+
+    def test_every_stage_answers_with_the_same_bytes(self):
+        world = self.sandbox.folder / "world.bt"
+        self.assertEqual(self.sandbox.goshawk("world", world, "--json").status, 0)
+        file, process = self.record("plans.mcap")
+        launch = self.launch(PLANNING, "planning", "-p", f"map_server:map_file:={world}")
+        for number, goal in enumerate(GOALS, 1):
+            self.request(number, goal)
+        time.sleep(0.5)
+        launch.process.stop()
+        process.stop()
+        counts = self.contents(file)["counts"]
+        self.assertEqual(counts.get("/plan_request"), len(GOALS), counts)
+        for topic in ("/path", "/corridor", "/trajectory"):
+            self.assertGreaterEqual(counts[topic], 2, counts)
+        for stage, (inputs, output) in INPUTS.items():
+            with self.subTest(stage=stage):
+                self.check_stage(file, stage, inputs, output)
+
+    def check_stage(self, file, stage, inputs, output):
+        again, process = self.record(f"{stage}.mcap", output)
+        launch = self.launch([stage], stage)
+        played = self.sandbox.goshawk("replay", file, "--restamp", "--topics", *inputs,
+                                      "--wait", "2", "--json")
+        self.assertEqual(played.status, 0, str(played))
+        time.sleep(0.3)
+        launch.process.stop()
+        process.stop()
+        then, now = self.messages(file, output), self.messages(again, output)
+        self.assertEqual(len(now), len(then), launch.tails())
+        for old, new in zip(then, now):
+            self.assertEqual(new["bytes"], old["bytes"])
+            self.assertEqual(without_times(new["value"]), without_times(old["value"]))
+        harness.note(f"{stage}: {len(now)} answers the same")
+
+
+if __name__ == "__main__":
+    harness.main()
