@@ -10,6 +10,7 @@ int world_command(const Arguments& arguments);
 int fly_command(const Arguments& arguments);
 int run_command(const Arguments& arguments);
 int launch_command(const Arguments& arguments);
+int conform_command(const Arguments& arguments);
 int bench_command(const Arguments& arguments);
 int bench_plan_command(const Arguments& arguments);
 
