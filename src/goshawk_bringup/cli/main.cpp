@@ -29,6 +29,7 @@ constexpr Verb kVerbs[] = {
     {"check", "the second opinion on a flight folder: what the body came near to, when and where",
      &cli::check_command},
     {"world", "make a world, or convert a map", &cli::world_command},
+    {"campaign", "fly many random missions, judged, with a summary", &cli::campaign_command},
     {"launch", "start what a launch file lists, supervised, until Ctrl-C", &cli::launch_command},
     {"view", "look at a flight, or live with --live, in a browser", &cli::view_command},
     {"run", "start one component: goshawk run COMPONENT --ros-args ...", &cli::run_command},
