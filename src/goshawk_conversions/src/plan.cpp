@@ -34,9 +34,9 @@ Result<PlanRequest> from_msg(const goshawk_msgs::msg::PlanRequest& m) {
   }
   for (std::size_t k = 0; k < request.other_goals_map.size(); ++k) {
     if (request.other_goals_map[k].allFinite()) continue;
-    return fail(ErrorCode::invalid_input, "other goal " + std::to_string(k) +
-                                              " of a plan request is not finite: " +
-                                              to_text(request.other_goals_map[k]));
+    return fail(ErrorCode::invalid_input,
+                "other goal " + std::to_string(k) +
+                    " of a plan request is not finite: " + to_text(request.other_goals_map[k]));
   }
   if (!std::isfinite(m.goal_yaw()) || !(m.deadline() >= 0.0 && std::isfinite(m.deadline()))) {
     return fail(ErrorCode::invalid_input,

@@ -29,7 +29,8 @@ class PathSearchComponent : public Component {
     node.subscribe<msg::PlanRequest>(
         "plan_request", Qos::reliable_last(),
         [this](const msg::PlanRequest& m, const MessageInfo& info) { on_request(m, info); });
-    reporter_.ready("searches with " + std::string(search_.planner_name()) + ", " + config_.corner_rule);
+    reporter_.ready("searches with " + std::string(search_.planner_name()) + ", " +
+                    config_.corner_rule);
   }
 
  private:
@@ -40,9 +41,8 @@ class PathSearchComponent : public Component {
     std::vector<Vec3> goals_map = {request->goal.position};
     goals_map.insert(goals_map.end(), request->other_goals_map.begin(),
                      request->other_goals_map.end());
-    const PlanQuery query{.start_map = request->start.position,
-                          .goals_map = goals_map,
-                          .stop = stop_of(*request)};
+    const PlanQuery query{
+        .start_map = request->start.position, .goals_map = goals_map, .stop = stop_of(*request)};
     auto [path, compute_ns] = timed([&] { return search_.plan(query); });
     timing.compute_ns = compute_ns;
     if (!path) return reporter_.failed(request->id, path.error(), timing);
@@ -53,8 +53,7 @@ class PathSearchComponent : public Component {
   /// What is left of the request's deadline.
   StopSignal stop_of(const conversions::PlanRequest& request) const {
     if (request.deadline_s == 0.0) return {};
-    return StopSignal::after(request.deadline_s -
-                             double(node_.now_ns() - request.stamp_ns) * 1e-9);
+    return StopSignal::after(request.deadline_s - double(node_.now_ns() - request.stamp_ns) * 1e-9);
   }
 
   void report(std::uint64_t request_id, const PlannedPath& path, Timing timing) {

@@ -27,7 +27,7 @@ struct Config {
   double clearance_m = 0.0;
   double clearance_weight = 1.0;
 
-  int max_iterations = 5000;
+  int max_iterations = 2000;
   double step_m = 1.0;
   int seed = 1;
 };

@@ -9,7 +9,7 @@ namespace goshawk::path_search {
 enum class SamplingMethod { rrt, rrtstar, prm };
 
 struct SamplingOptions {
-  int max_iterations = 5000;  // samples; rrt ends with its first path, the others use all
+  int max_iterations = 2000;  // samples; rrt ends with its first path, the others use all
   double step_voxels = 5.0;   // longest edge of a tree
   std::uint64_t seed = 1;
 };
