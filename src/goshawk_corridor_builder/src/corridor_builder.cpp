@@ -184,7 +184,8 @@ Status CorridorBuilder::Impl::check_path(const VoxelGrid& grid, std::span<const 
   for (std::size_t i = 0; i < path.size(); ++i) {
     if (is_finite(path[i])) continue;
     return fail(ErrorCode::invalid_input,
-                "waypoint " + std::to_string(i) + " of the path is not finite");
+                "waypoint " + std::to_string(i) + " of the path, an end of segment " +
+                    std::to_string(i == 0 ? 0 : i - 1) + ", is not finite");
   }
   const Vec3 upper(grid.geometry.size.x, grid.geometry.size.y, grid.geometry.size.z);
   for (std::size_t i = 0; i < path.size(); ++i) {

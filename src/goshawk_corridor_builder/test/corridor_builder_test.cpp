@@ -185,7 +185,7 @@ TEST_P(BothGenerators, RefusesAPathThatIsNoPath) {
   expect_error(builder_.build(grid, std::vector{a}), ErrorCode::invalid_input, "1 points");
   for (const double bad : {kNaN, kInf, -kInf}) {
     expect_error(builder_.build(grid, std::vector{a, Vec3(bad, 1, 1)}), ErrorCode::invalid_input,
-                 "waypoint 1");
+                 "waypoint 1 of the path, an end of segment 0");
   }
   VoxelGrid torn = grid;
   torn.geometry.size.x = 7;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "goshawk/core/inflation.hpp"
 #include "support.hpp"
 
 namespace goshawk::map_server {
@@ -99,6 +100,29 @@ TEST(MakeVoxelGrid, PoliciesAreOrderedFromStrictToLax) {
       const std::int64_t blocked = grid ? grid->occupied.count() : last;
       EXPECT_LE(blocked, last);
       last = blocked;
+    }
+  }
+}
+
+TEST(GrowingVoxels, BecomeTheVoxelGridWhenTheyAreGrown) {
+  Random random(23);
+  for (int round = 0; round < 30; ++round) {
+    const RawVoxels raw = random_raw(random);
+    for (const auto policy :
+         {UnknownPolicy::occupied, UnknownPolicy::blocked, UnknownPolicy::free}) {
+      const auto grid = make_voxel_grid(raw, {policy, 0.1}, 5);
+      if (!grid) continue;
+      const VoxelGrid growing = growing_voxels(raw.geometry, raw.occupied, raw.known, policy, 5);
+      ASSERT_TRUE(growing.check().ok());
+      EXPECT_EQ(growing.version, grid->version);
+      EXPECT_EQ(growing.unknown_is_occupied, grid->unknown_is_occupied);
+      BitGrid grown = inflate(growing.occupied, 0.1, raw.geometry.resolution_m).value();
+      const Index3 n = raw.geometry.size;
+      for (int k = 0; policy == UnknownPolicy::blocked && k < n.x * n.y * n.z; ++k) {
+        const Index3 i{k % n.x, k / n.x % n.y, k / n.x / n.y};
+        if (!raw.known.get(i)) grown.set(i, true);
+      }
+      EXPECT_EQ(grown, grid->occupied);
     }
   }
 }
