@@ -36,8 +36,8 @@ struct Instance {
 Instance random_instance(Random& random, bool scale, double stretch) {
   Instance i;
   test::CorridorKind kind;
-  kind.segments = random.chance(0.15) ? 2 : 1;
-  kind.planes = 6 + random.below(4);
+  kind.segments = 1 + random.below(2);
+  kind.planes = 6 + random.below(5);
   kind.least_length_m = 0.3;
   kind.most_length_m = 1.5;
   i.corridor = test::random_corridor(random, kind);
@@ -48,7 +48,7 @@ Instance random_instance(Random& random, bool scale, double stretch) {
               .norm = random.chance(0.5) ? LimitNorm::euclidean : LimitNorm::per_axis};
   Config config;
   config.min_pieces = 2;
-  config.piece_duration_s = random.uniform(3.0, 10.0);
+  config.piece_duration_s = random.uniform(2.0, 10.0);
   i.plan = cut_trapezoid(i.request(), config);
   for (double& duration : i.plan.durations_s) duration *= stretch * random.uniform(0.8, 1.25);
   make_problem(i.request(), i.plan, scale, std::pow(10.0, random.uniform(-2.0, 2.0)), HUGE_VAL,
@@ -68,7 +68,7 @@ TEST(SplineSolver, FixedDurationsGiveIpoptsObjectiveAndSolution) {
   Random random(5);
   SplineSolver solver;
   int compared = 0;
-  for (int n = 0; n < 850; ++n) {
+  for (int n = 0; n < 160; ++n) {
     SCOPED_TRACE(n);
     const auto instance = random_instance(random, false, random.uniform(1.0, 3.0));
     // Flat optima: the solution is as near as the square root of the gap.
@@ -89,14 +89,14 @@ TEST(SplineSolver, FixedDurationsGiveIpoptsObjectiveAndSolution) {
     EXPECT_LE(outcome.primal_residual, 1e-9);
     EXPECT_LE(outcome.gap, 1e-10 * outcome.objective + 1e-12);
   }
-  EXPECT_GE(compared, 600);
+  EXPECT_GE(compared, 100);
 }
 
 TEST(SplineSolver, TimeAndShapeTogetherGiveIpoptsObjectiveAndTimeScale) {
   Random random(6);
   SplineSolver solver;
   int compared = 0;
-  for (int n = 0; n < 150; ++n) {
+  for (int n = 0; n < 50; ++n) {
     SCOPED_TRACE(n);
     const auto instance = random_instance(random, true, 1.0);
     const auto outcome = solver.solve(instance.problem, {});
@@ -107,7 +107,7 @@ TEST(SplineSolver, TimeAndShapeTogetherGiveIpoptsObjectiveAndTimeScale) {
     EXPECT_NEAR(outcome.objective, truth.objective, 1e-6 * (1.0 + std::abs(truth.objective)));
     EXPECT_NEAR(outcome.eta, truth.eta, 1e-4 * truth.eta);
   }
-  EXPECT_GE(compared, 130);
+  EXPECT_GE(compared, 40);
 }
 
 // Central differences of the Lagrangian, in every unknown: the Karush-Kuhn-Tucker conditions, and
