@@ -48,6 +48,7 @@ std::optional<Planner> Planner::make(const std::string& name) {
 
 Flight Planner::fly(const Task& task) {
   search_->set_map(task.grid);
+  if (samples()) return plan(task);  // memory is nothing beside a second of sampling
   plan(task);
   return plan(task);
 }

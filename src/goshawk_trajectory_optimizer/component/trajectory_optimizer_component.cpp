@@ -84,14 +84,14 @@ class TrajectoryOptimizerComponent : public Component {
   Status add_yaw(const conversions::PlanRequest& request, const Trajectory& trajectory,
                  msg::BezierTrajectory& m) {
     if (config_.yaw == "none") return success();
-    const auto curve = plan_yaw(
-        trajectory, {.mode = config_.yaw == "fixed"          ? YawMode::fixed
-                             : config_.yaw == "along_motion" ? YawMode::along_motion
-                                                             : YawMode::towards_point,
-                     .start_rad = yaw_rad_,
-                     .fixed_rad = request.goal_yaw_rad,
-                     .point_map = Vec3(config_.yaw_point_x_m, config_.yaw_point_y_m, 0.0),
-                     .rate_max_rad_s = config_.yaw_rate_max_rad_s});
+    const auto curve =
+        plan_yaw(trajectory, {.mode = config_.yaw == "fixed"          ? YawMode::fixed
+                                      : config_.yaw == "along_motion" ? YawMode::along_motion
+                                                                      : YawMode::towards_point,
+                              .start_rad = yaw_rad_,
+                              .fixed_rad = request.goal_yaw_rad,
+                              .point_map = Vec3(config_.yaw_point_x_m, config_.yaw_point_y_m, 0.0),
+                              .rate_max_rad_s = config_.yaw_rate_max_rad_s});
     if (!curve) return curve.error();
     yaw_rad_ = curve->yaw_rad(curve->duration_s());
     m.yaw_step(curve->step_s);

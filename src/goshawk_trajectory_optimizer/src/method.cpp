@@ -150,8 +150,15 @@ Result<Solution> TrajectoryOptimizer::Method::thesis(const Request& request) {
                        per_axis,         request.duration_s, request.out_of_time};
   Plan plan = thesis_plan(thesis);
   if (solve_fixed(thesis, plan)) consider(thesis, plan);
-  if (best_) return finish();
-  return failure(thesis);
+  if (!best_) return failure(thesis);
+  if (request.limits.norm == LimitNorm::per_axis) return finish();
+  // Other limits than the thesis': its curve, no faster than they allow.
+  best_.reset();
+  if (request.rests()) slow_to_limits(request, plan, 1.0);
+  if (consider(request, plan)) return finish();
+  return fail(ErrorCode::not_certified,
+              "the thesis' form limits each axis, and breaks the limits asked for: ask for limits "
+              "per axis, or use method scale");
 }
 
 // The thesis' Ref. [40] and Ref. [42] in the corridor's clothes: what leaves it is not handed out.
@@ -203,6 +210,23 @@ void TrajectoryOptimizer::Method::try_longer(const Request& request, const Plan&
   }
 }
 
+// The same curve between rests, with the durations that its control points need.
+void TrajectoryOptimizer::Method::slow_to_limits(const Request& request, Plan& plan,
+                                                 double least) const {
+  double exact = least;
+  for (std::size_t k = 0; k < plan.durations_s.size(); ++k) {
+    const auto piece =
+        BezierPiece::between(plan.joints[k], plan.joints[k + 1], plan.durations_s[k]);
+    exact = std::max(exact, time_factor(usage_of(piece, request.limits, plan.a_factor(k))));
+  }
+  exact *= 1.0 + 1e-12;
+  stretch_durations(plan, exact);
+  for (FlatState& joint : plan.joints) {
+    joint.velocity /= exact;
+    joint.acceleration /= exact * exact;
+  }
+}
+
 bool TrajectoryOptimizer::Method::solve_scale(const Request& request, Plan& plan, double reach_m,
                                               bool coarse, double end_slack, double& kappa) {
   if (!make_problem(request, plan, true, kTimeWeight, reach_m, problem_, units_, end_slack))
@@ -222,20 +246,8 @@ bool TrajectoryOptimizer::Method::solve_scale(const Request& request, Plan& plan
   if (last_.status != SplineSolver::Status::solved || !(last_.eta > 0.0)) return false;
   kappa = std::sqrt(last_.eta);
   take_solution(request, solver_.joints(), units_, kappa, plan);
-  if (request.rests()) {  // exact: the shape is feasible at any longer duration
-    double exact = 0.0;
-    for (std::size_t k = 0; k < plan.durations_s.size(); ++k) {
-      const auto piece =
-          BezierPiece::between(plan.joints[k], plan.joints[k + 1], plan.durations_s[k]);
-      exact = std::max(exact, time_factor(usage_of(piece, request.limits, plan.a_factor(k))));
-    }
-    exact *= 1.0 + 1e-12;
-    stretch_durations(plan, exact);
-    for (FlatState& joint : plan.joints) {
-      joint.velocity /= exact;
-      joint.acceleration /= exact * exact;
-    }
-  }
+  // Exact: the shape is feasible at any longer duration.
+  if (request.rests()) slow_to_limits(request, plan, 0.0);
   return true;
 }
 

@@ -43,6 +43,8 @@ class TrajectoryOptimizer::Method {
   void balance(const Request& request, Plan& plan) const;
   /// Keeps the plan if it is certified and better than what is kept.
   bool consider(const Request& request, const Plan& plan);
+  /// @param least factor of the durations, where the limits allow more
+  void slow_to_limits(const Request& request, Plan& plan, double least) const;
   Solution finish();
   bool stopped() const { return last_.status == SplineSolver::Status::stopped; }
   Error failure(const Request& request) const;

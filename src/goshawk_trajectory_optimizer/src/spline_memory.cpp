@@ -44,9 +44,7 @@ void SplineSolver::Memory::load_joints(const SplineProblem& problem) {
   pieces_.resize(n);
   panels_.assign(n, Panel{});
   jerk_.resize(n);
-  for (std::size_t k = 0; k < n; ++k) {
-    for (int b = 0; b < 3; ++b) x_[k].v[b] = padded(problem.joints[k].col(b));
-  }
+  set_joints(problem.joints);
   if (state.scale) {
     for (int b = 0; b < 3; ++b) {
       rates_[0].v[b] = padded(problem.start_rate.col(b));
@@ -183,6 +181,12 @@ bool SplineSolver::Memory::is_row(const PointMap& map, int k, double limit, cons
     if (!(std::sqrt(square) <= limit * (1.0 + 1e-9))) constant_point_violated = true;
   }
   return false;
+}
+
+void SplineSolver::Memory::set_joints(const std::vector<Joint>& joints) {
+  for (std::size_t k = 0; k < joints.size(); ++k) {
+    for (int b = 0; b < 3; ++b) x_[k].v[b] = padded(joints[k].col(b));
+  }
 }
 
 Joint SplineSolver::Memory::joint(int k) const {

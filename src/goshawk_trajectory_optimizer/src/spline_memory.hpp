@@ -17,6 +17,7 @@ struct SplineSolver::Memory {
   /// central path, for the price of one pass.
   void start();
   Joint joint(int k) const;
+  void set_joints(const std::vector<Joint>& joints);
 
  private:
   void smooth_guess();

@@ -78,6 +78,14 @@ bool SplineSolver::needs_more_time(const SplineProblem& problem, const Settings&
   return s.objective + s.proof - s.gap > 1.0 + kSmooth;
 }
 
+double SplineSolver::lagrangian(const std::vector<Joint>& joints, double eta) {
+  SplineState& s = memory_->state;
+  memory_->set_joints(joints);
+  s.eta = eta;
+  spline_kernels().linearise(s);
+  return s.objective + s.proof - s.gap;  // z'g = z'(g + s) - z's
+}
+
 void SplineSolver::iterate(const Settings& settings, Outcome& out) {
   SplineState& s = memory_->state;
   const SplineKernels& kernels = spline_kernels();

@@ -110,6 +110,43 @@ TEST(SplineSolver, TimeAndShapeTogetherGiveIpoptsObjectiveAndTimeScale) {
   EXPECT_GE(compared, 40);
 }
 
+// Central differences of the Lagrangian, in every unknown: the Karush-Kuhn-Tucker conditions, and
+// the gradients of cost and constraints with them.
+TEST(SplineSolver, TheLagrangianIsFlatAtASolution) {
+  Random random(8);
+  SplineSolver solver;
+  for (int n = 0; n < 40; ++n) {
+    SCOPED_TRACE(n);
+    const bool scale = n % 2 == 0;
+    const auto instance = random_instance(random, scale, scale ? 1.0 : 2.5);
+    const auto outcome = solver.solve(instance.problem, {.gap = 1e-9});
+    if (outcome.status != SplineSolver::Status::solved) continue;
+    const std::vector<Joint> solution = solver.joints();
+    const double at_solution = solver.lagrangian(solution, outcome.eta);
+    EXPECT_NEAR(at_solution, outcome.objective, 1e-6 * (1.0 + outcome.objective));
+    constexpr double h = 1e-4;
+    const auto slope = [&](const std::vector<Joint>& ahead, const std::vector<Joint>& behind,
+                           double d_eta) {
+      const double up = solver.lagrangian(ahead, outcome.eta + d_eta);
+      return (up - solver.lagrangian(behind, outcome.eta - d_eta)) / (2.0 * h);
+    };
+    double largest = scale ? std::abs(slope(solution, solution, h)) : 0.0;
+    double far = 0.0;
+    for (std::size_t k = 1; k + 1 < solution.size(); ++k) {
+      for (int i = 0; i < 9; ++i) {
+        auto ahead = solution, behind = solution;
+        ahead[k](i) += h;
+        behind[k](i) -= h;
+        largest = std::max(largest, std::abs(slope(ahead, behind, 0.0)));
+        // It is convex: nowhere lower than here.
+        far = std::max(far, at_solution - solver.lagrangian(ahead, outcome.eta));
+      }
+    }
+    EXPECT_LT(largest, 1e-4 * (1.0 + outcome.objective));
+    EXPECT_LT(far, 1e-7 * (1.0 + outcome.objective));
+  }
+}
+
 TEST(SplineSolver, ProvesThatTooShortDurationsAreInfeasible) {
   Random random(7);
   SplineSolver solver;

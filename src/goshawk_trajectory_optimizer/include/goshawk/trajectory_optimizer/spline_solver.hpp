@@ -46,6 +46,10 @@ class SplineSolver {
 
   const std::vector<Joint>& joints() const { return solution_; }
 
+  /// The Lagrangian f(x) + z'g(x) of the last problem with its final multipliers, anywhere: its
+  /// gradient is zero at a solution. For tests by finite differences. @pre a solve went before
+  double lagrangian(const std::vector<Joint>& joints, double eta);
+
  private:
   struct Memory;
   void iterate(const Settings& settings, Outcome& out);
