@@ -34,7 +34,8 @@ Json plot_json(const Plot& p) {
           {"where", p.where},
           {"log_x", p.log_x},
           {"log_y", p.log_y},
-          {"points_only", p.points_only}};
+          {"points_only", p.points_only},
+          {"from", p.from}};
 }
 
 /// Rows of one table, keys of the first row as columns.
@@ -56,6 +57,17 @@ std::string table_text(const std::vector<const Json*>& rows) {
     text += '\n';
   }
   return text;
+}
+
+/// A note that holds rows is a table of its own; a long one is for the pictures.
+std::string note_text(const std::string& key, const Json& value) {
+  constexpr std::size_t kLongest = 40;
+  const bool rows = value.is_array() && !value.empty() && value.front().is_object();
+  if (!rows) return "\n" + key + ": " + cell(value) + "\n";
+  if (value.size() > kLongest) return "";
+  std::vector<const Json*> lines;
+  for (const Json& row : value) lines.push_back(&row);
+  return "\n" + key + "\n" + table_text(lines);
 }
 
 /// The drawing script lies beside the bench programs.
@@ -104,7 +116,7 @@ std::string Report::to_text() const {
   }
   std::string text;
   for (const std::string& table : order) text += "\n" + table_text(tables[table]);
-  for (const auto& [key, value] : notes_.items()) text += "\n" + key + ": " + cell(value) + "\n";
+  for (const auto& [key, value] : notes_.items()) text += note_text(key, value);
   return text;
 }
 

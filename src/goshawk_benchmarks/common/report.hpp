@@ -27,6 +27,7 @@ struct Plot {
   bool log_x = false;
   bool log_y = false;
   bool points_only = false;
+  std::string from = "rows";  // or the key of a note that holds rows of another kind
 };
 
 /// Rows of a benchmark, written as a table or as JSON, and as pictures.

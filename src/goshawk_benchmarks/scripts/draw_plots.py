@@ -16,7 +16,7 @@ MARKERS = "os^Dv<>ph*"
 
 
 def rows_of(report, plot):
-    return [r for r in report["rows"]
+    return [r for r in report[plot.get("from", "rows")]
             if all(r.get(k) == v for k, v in plot["where"].items())
             and r.get(plot["x"]) is not None and r.get(plot["y"]) is not None]
 

@@ -23,6 +23,7 @@ constexpr Bench kBenches[] = {
     {"scenario", "MAP.3dmap SCEN.3dscen: lengths and times on public voxel problems"},
     {"corridor", "corridor generators: time, volume, faces, obstacles cut"},
     {"trajectory", "planners: durations, speeds, optimisation and whole plans"},
+    {"tracking", "closed-loop flights: errors by controller, weather and plant, step times"},
 };
 
 void print_help(std::FILE* out) {

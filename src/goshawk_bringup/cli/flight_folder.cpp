@@ -2,7 +2,9 @@
 
 #include <fstream>
 
+#include "folders.hpp"
 #include "goshawk/flight_report/files.hpp"
+#include "goshawk/flight_report/page.hpp"
 
 namespace goshawk::cli {
 namespace {
@@ -45,6 +47,7 @@ Status write_flight(const std::string& folder, const Json& summary, const Flight
   if (record.flown().empty()) return success();
   const VoxelGrid raw{.geometry = map.raw.geometry, .occupied = map.raw.occupied, .known = {}};
   flight_report::Flight flight;
+  flight.title = "Flight " + std::filesystem::path(folder).filename().string();
   flight.obstacles = &raw;
   flight.grown = map.grown.get();
   flight.body_radius_m = body_radius_m;
@@ -57,7 +60,10 @@ Status write_flight(const std::string& folder, const Json& summary, const Flight
     flight.flown.push_back(
         {seconds(stamp_ns, origin_ns), state.position_map, state.velocity_map, state.q_map_base});
   }
-  return flight_report::write_flight_folder(flight, folder);
+  if (auto drawn = flight_report::write_flight_folder(flight, folder); !drawn) return drawn;
+  return flight_report::write_flight_page(
+      flight, page_template(), folder + "/flight.html",
+      summary.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 }  // namespace goshawk::cli

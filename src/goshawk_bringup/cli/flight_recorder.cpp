@@ -1,6 +1,7 @@
 #include "flight_recorder.hpp"
 
 #include <chrono>
+#include <utility>
 
 #include "goshawk/conversions/vehicle.hpp"
 
@@ -40,8 +41,14 @@ FlightRecorder::FlightRecorder(Node& node)
       [this](const msg::CommittedTrajectory& m, const MessageInfo&) { on_commit(m); });
   node.subscribe<nav_msgs::msg::Odometry>(
       "odom", Qos::best_effort(100), [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) {
-        const auto state = conversions::from_msg(m);
-        if (state) flown_.push_back({conversions::to_ns(m.header().stamp()), *state});
+        if (!knows_truth_) on_odometry(m);
+      });
+  // A simulator with noisy sensors tells the truth beside them: that is what was flown.
+  node.subscribe<nav_msgs::msg::Odometry>(
+      "odom_true", Qos::best_effort(100),
+      [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) {
+        if (!std::exchange(knows_truth_, true)) flown_.clear();
+        on_odometry(m);
       });
   node.subscribe<msg::TrackingState>("tracking_state", Qos::best_effort(100),
                                      [this](const msg::TrackingState& m, const MessageInfo&) {
@@ -49,6 +56,11 @@ FlightRecorder::FlightRecorder(Node& node)
                                        errors_.push_back({conversions::to_ns(m.header().stamp()),
                                                           m.request_id(), m.position_error()});
                                      });
+}
+
+void FlightRecorder::on_odometry(const nav_msgs::msg::Odometry& m) {
+  const auto state = conversions::from_msg(m);
+  if (state) flown_.push_back({conversions::to_ns(m.header().stamp()), *state});
 }
 
 void FlightRecorder::on_commit(const msg::CommittedTrajectory& m) {

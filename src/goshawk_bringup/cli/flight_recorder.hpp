@@ -8,6 +8,7 @@
 #include "goshawk/core/vehicle.hpp"
 #include "goshawk/runtime/node.hpp"
 #include "goshawk_msgs.h"
+#include "nav_msgs.h"
 
 namespace goshawk::cli {
 
@@ -59,12 +60,14 @@ class FlightRecorder {
 
  private:
   void on_commit(const goshawk_msgs::msg::CommittedTrajectory& m);
+  void on_odometry(const nav_msgs::msg::Odometry& m);
 
   runtime::Node& node_;
   runtime::Publisher<geometry_msgs::msg::PoseStamped> goals_;
   std::set<std::string> ready_;
   goshawk_msgs::msg::NavigatorState navigator_;
   std::vector<FlownState> flown_;
+  bool knows_truth_ = false;
   std::vector<TrackedError> errors_;
   std::vector<CommittedRecord> committed_;
   std::map<std::uint64_t, RequestRecord> requests_;

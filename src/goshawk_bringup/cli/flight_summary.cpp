@@ -181,7 +181,9 @@ void print_summary(const Json& summary) {
       "verdict: %s%s%s\n", summary["verdict"].get<std::string>().c_str(),
       summary["code"] == "ok" ? "" : (", " + summary["code"].get<std::string>()).c_str(),
       summary["message"] == "" ? "" : (": " + summary["message"].get<std::string>()).c_str());
-  std::printf("flight folder: %s\n", summary["folder"].get<std::string>().c_str());
+  const auto folder = summary["folder"].get<std::string>();
+  std::printf("flight folder: %s\nlook at it:    %s/flight.html (opens by double click)\n",
+              folder.c_str(), folder.c_str());
 }
 
 }  // namespace goshawk::cli

@@ -11,6 +11,11 @@ inline std::string install_prefix() {
   return std::filesystem::read_symlink("/proc/self/exe").parent_path().parent_path().string();
 }
 
+/// The HTML page that flights are put into (goshawk_viewer).
+inline std::string page_template() {
+  return install_prefix() + "/share/goshawk/viewer/page.html";
+}
+
 /// A folder that goes away with this object.
 class TemporaryFolder {
  public:

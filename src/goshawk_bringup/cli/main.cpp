@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "goshawk/introspection/doctor_command.hpp"
 #include "goshawk/introspection/node_command.hpp"
 #include "goshawk/introspection/param_command.hpp"
 #include "goshawk/introspection/topic_command.hpp"
@@ -25,8 +26,11 @@ constexpr Verb kVerbs[] = {
      &cli::fly_command},
     {"plan", "one plan in this process, no DDS: path, corridor, certified trajectory",
      &cli::plan_command},
+    {"check", "the second opinion on a flight folder: what the body came near to, when and where",
+     &cli::check_command},
     {"world", "make a world, or convert a map", &cli::world_command},
     {"launch", "start what a launch file lists, supervised, until Ctrl-C", &cli::launch_command},
+    {"view", "look at a flight, or live with --live, in a browser", &cli::view_command},
     {"run", "start one component: goshawk run COMPONENT --ros-args ...", &cli::run_command},
     {"bench", "measure plans over DDS, or a stage beside its rivals", &cli::bench_command},
     {"conform", "examine a stage, whoever wrote it, item by item", &cli::conform_command},
@@ -37,6 +41,8 @@ constexpr Verb kVerbs[] = {
     {"node", "list", [](const cli::Arguments& a) { return introspection::node_command(a); }},
     {"param", "describe COMPONENT: every parameter with unit, default and range",
      [](const cli::Arguments& a) { return introspection::param_command(a); }},
+    {"doctor", "look at machine, settings and domain: what does not fit, and how to mend it",
+     [](const cli::Arguments& a) { return introspection::doctor_command(a); }},
 };
 
 void print_help() {

@@ -3,6 +3,7 @@
 
 #include "folders.hpp"
 #include "goshawk/flight_report/files.hpp"
+#include "goshawk/flight_report/page.hpp"
 #include "map_options.hpp"
 #include "plan_json.hpp"
 #include "verbs.hpp"
@@ -14,6 +15,7 @@ struct Options {
   MapOptions map;
   std::string start = "3,0,1";
   std::string goal = "3,8,2";
+  std::vector<std::string> other_goals;
   std::string save;
   bool json = false;
 };
@@ -28,6 +30,8 @@ void print(const Plan& plan) {
                 plan.path->raw_length_m, plan.path->raw_map.size(), plan.path->pruned_length_m,
                 plan.path->waypoints_map.size(),
                 static_cast<long long>(plan.path->counters.expanded));
+    const std::string note = plan.path->note();
+    if (!note.empty()) std::printf("            %s\n", note.c_str());
   }
   if (plan.corridor) {
     std::printf("corridor    %zu polytopes, smallest overlap %.3f m\n",
@@ -60,7 +64,8 @@ Status save(const Plan& plan, const LoadedMap& map, const Limits& limits,
   leg.corridor = plan.corridor->polytopes;
   leg.trajectory = plan.solution->trajectory;
   flight.legs.push_back(std::move(leg));
-  return flight_report::write_flight_folder(flight, folder);
+  if (auto drawn = flight_report::write_flight_folder(flight, folder); !drawn) return drawn;
+  return flight_report::write_flight_page(flight, page_template(), folder + "/flight.html");
 }
 
 int run(const Options& options, const std::string& map_file) {
@@ -69,6 +74,12 @@ int run(const Options& options, const std::string& map_file) {
   if (!start) return report_failure(start.error(), json, kWrongCall);
   const auto goal = parse_point(options.goal);
   if (!goal) return report_failure(goal.error(), json, kWrongCall);
+  std::vector<Vec3> others;
+  for (const std::string& text : options.other_goals) {
+    const auto other = parse_point(text);
+    if (!other) return report_failure(other.error(), json, kWrongCall);
+    others.push_back(*other);
+  }
   const auto limits = options.map.limits({});
   if (!limits) return report_failure(limits.error(), json, kWrongCall);
   const auto config = PlanningConfig::read(options.map.ros_args(map_file));
@@ -78,12 +89,12 @@ int run(const Options& options, const std::string& map_file) {
   const auto map = load_map(config->map);
   if (!map) return report_failure(map.error(), json, kNotDone);
 
-  planner->set_map(map->grown);
+  planner->set_map(*map);
   FlatState from;
   FlatState to;
   from.position = *start;
   to.position = *goal;
-  const Plan plan = planner->plan(from, to, *limits);
+  const Plan plan = planner->plan(from, to, *limits, others);
   // What cannot be saved is no success: said before, and instead of, the result.
   if (plan.outcome && !options.save.empty()) {
     if (const auto saved = save(plan, *map, *limits, options.save); !saved) {
@@ -103,6 +114,8 @@ int plan_command(const Arguments& arguments) {
   options.map.add_to(app);
   app.add_option("--start", options.start, "x,y,z [m] frame map")->capture_default_str();
   app.add_option("--goal", options.goal, "x,y,z [m] frame map")->capture_default_str();
+  app.add_option("--other-goal", options.other_goals,
+                 "x,y,z [m] a goal that will do as well; may repeat");
   app.add_option("--save", options.save, "folder for pictures, csv and the corridor's mesh");
   app.add_flag("--json", options.json, "print one JSON object (docs/cli.md)");
   if (const auto status = parse(app, arguments)) return *status;

@@ -16,7 +16,10 @@ Json stages_json(const std::vector<StageTime>& stages) {
 Json path_json(const path_search::PlannedPath& path) {
   return {{"raw_length_m", path.raw_length_m},    {"pruned_length_m", path.pruned_length_m},
           {"waypoints_raw", path.raw_map.size()}, {"waypoints", path.waypoints_map.size()},
-          {"expanded", path.counters.expanded},   {"points", to_json(path.waypoints_map)}};
+          {"expanded", path.counters.expanded},   {"points", to_json(path.waypoints_map)},
+          {"cost", path.cost},                    {"goal", path.goal},
+          {"start_moved_m", path.start_moved_m},  {"goal_moved_m", path.goal_moved_m},
+          {"cut_off", path.cut_off},              {"note", path.note()}};
 }
 
 Json polytope_json(const Polytope& p) {
@@ -56,6 +59,25 @@ Json trajectory_json(const Trajectory& trajectory) {
           {"pieces", pieces}};
 }
 
+Json state_json(const FlatState& state) {
+  return {{"position", to_json(state.position)},
+          {"velocity", to_json(state.velocity)},
+          {"acceleration", to_json(state.acceleration)}};
+}
+
+Json request_json(const Plan& plan) {
+  const Limits& l = plan.limits;
+  return {{"start", state_json(plan.start)},
+          {"goal", state_json(plan.goal)},
+          {"limits",
+           {{"v_max_m_s", l.v_max_m_s},
+            {"a_max_m_s2", l.a_max_m_s2},
+            {"norm", int(l.norm)},
+            {"j_max_m_s3", l.j_max_m_s3},
+            {"v_max_vertical_m_s", l.v_max_vertical_m_s},
+            {"a_max_vertical_m_s2", l.a_max_vertical_m_s2}}}};
+}
+
 }  // namespace
 
 Json certificate_to_json(const Certificate& c) {
@@ -66,7 +88,11 @@ Json certificate_to_json(const Certificate& c) {
           {"joint_velocity_m_s", to_json(c.joint_velocity_m_s)},
           {"joint_acceleration_m_s2", to_json(c.joint_acceleration_m_s2)},
           {"start_m", to_json(c.start_m)},
-          {"goal_m", to_json(c.goal_m)}};
+          {"goal_m", to_json(c.goal_m)},
+          {"jerk_m_s3", to_json(c.jerk_m_s3)},
+          {"start_excess_m_s", to_json(c.start_excess_m_s)},
+          {"start_excess_m_s2", to_json(c.start_excess_m_s2)},
+          {"start_excess_s", to_json(c.start_excess_s)}};
 }
 
 Json plan_to_json(const Plan& plan) {
@@ -75,6 +101,7 @@ Json plan_to_json(const Plan& plan) {
               {"code", std::string(to_string(plan.outcome.code()))},
               {"message", ok ? "" : plan.outcome.error().message},
               {"stages", stages_json(plan.stages)}};
+  object["request"] = request_json(plan);
   object["path"] = plan.path ? path_json(*plan.path) : Json(nullptr);
   object["corridor"] = plan.corridor ? corridor_json(*plan.corridor) : Json(nullptr);
   object["trajectory"] = plan.solution ? trajectory_json(plan.solution->trajectory) : Json(nullptr);

@@ -53,7 +53,7 @@ Result<LoadedMap> load_map(const map_server::Config& config) {
   auto grown = map_server::make_voxel_grid(*raw, map_server::growth(config), 1);
   if (!grown) return grown.error();
   return LoadedMap{*std::move(raw), std::make_shared<const VoxelGrid>(*std::move(grown)),
-                   source->tree};
+                   source->tree, map_server::growth(config).unknown};
 }
 
 Result<Planner> Planner::create(const PlanningConfig& config) {
@@ -66,31 +66,44 @@ Result<Planner> Planner::create(const PlanningConfig& config) {
   return Planner(*std::move(search), *std::move(builder), *std::move(optimizer));
 }
 
-void Planner::set_map(std::shared_ptr<const VoxelGrid> grid) {
-  grid_ = std::move(grid);
+void Planner::set_map(const LoadedMap& map) {
+  grid_ = map.grown;
+  raw_.emplace(map_server::growing_voxels(map.raw.geometry, map.raw.occupied, map.raw.known,
+                                          map.unknown, map.grown->version));
   search_.set_map(grid_);
 }
 
-Plan Planner::plan(const FlatState& start, const FlatState& goal, const Limits& limits) {
+Plan Planner::plan(const FlatState& start, const FlatState& goal, const Limits& limits,
+                   const std::vector<Vec3>& other_goals_map) {
   Plan plan;
-  plan.outcome = run(start, goal, limits, plan);
+  plan.start = start;
+  plan.goal = goal;
+  plan.limits = limits;
+  std::vector<Vec3> goals_map = {goal.position};
+  goals_map.insert(goals_map.end(), other_goals_map.begin(), other_goals_map.end());
+  plan.outcome = run(start, goals_map, limits, plan);
   return plan;
 }
 
-Status Planner::run(const FlatState& start, const FlatState& goal, const Limits& limits,
-                    Plan& plan) {
+Status Planner::run(const FlatState& start, const std::vector<Vec3>& goals_map,
+                    const Limits& limits, Plan& plan) {
   if (auto status = limits.check(); !status) return status;
-  auto path = run_stage(plan, "path_search", std::string(search_.planner_name()),
-                        [&] { return search_.plan(start.position, goal.position); });
+  auto path = run_stage(plan, "path_search", std::string(search_.planner_name()), [&] {
+    return search_.plan({.start_map = start.position, .goals_map = goals_map});
+  });
   if (!path) return path.error();
   plan.path = *std::move(path);
+  // The search may have moved the ends, or chosen another goal.
+  plan.start.position = plan.path->waypoints_map.front();
+  plan.goal.position = plan.path->waypoints_map.back();
+  const auto raw = raw_->obstacles(grid_->inflation_m);
   auto corridor = run_stage(plan, "corridor_builder", std::string(builder_.implementation()),
-                            [&] { return builder_.build(*grid_, plan.path->waypoints_map); });
+                            [&] { return builder_.build(*grid_, plan.path->waypoints_map, &raw); });
   if (!corridor) return corridor.error();
   plan.corridor = *std::move(corridor);
   auto solution =
       run_stage(plan, "trajectory_optimizer", std::string(optimizer_.implementation()),
-                [&] { return optimizer_.optimise(*plan.corridor, start, goal, limits); });
+                [&] { return optimizer_.optimise(*plan.corridor, plan.start, plan.goal, limits); });
   if (!solution) return solution.error();
   plan.solution = *std::move(solution);
   return success();

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "goshawk/core/certificate.hpp"
-#include "goshawk/corridor_builder/corridor_builder.hpp"
+#include "goshawk/corridor_builder/raw_map.hpp"
 #include "goshawk/map_server/config.hpp"
 #include "goshawk/path_search/path_search.hpp"
 #include "goshawk/runtime/ros_args.hpp"
@@ -33,11 +33,14 @@ struct LoadedMap {
   map_server::RawVoxels raw;
   std::shared_ptr<const VoxelGrid> grown;
   map_server::OcTreePtr tree;
+  map_server::UnknownPolicy unknown = map_server::UnknownPolicy::occupied;
 };
 Result<LoadedMap> load_map(const map_server::Config& config);
 
 /// What came out of each stage, as far as it went.
 struct Plan {
+  FlatState start, goal;  // what the trajectory was asked to begin and end with
+  Limits limits;
   std::vector<StageTime> stages;
   std::optional<path_search::PlannedPath> path;
   std::optional<Corridor> corridor;
@@ -49,8 +52,10 @@ struct Plan {
 class Planner {
  public:
   static Result<Planner> create(const PlanningConfig& config);
-  void set_map(std::shared_ptr<const VoxelGrid> grid);
-  Plan plan(const FlatState& start, const FlatState& goal, const Limits& limits);
+  void set_map(const LoadedMap& map);
+  /// @param other_goals_map [m] positions that will do as well as the goal's
+  Plan plan(const FlatState& start, const FlatState& goal, const Limits& limits,
+            const std::vector<Vec3>& other_goals_map = {});
 
  private:
   Planner(path_search::PathSearch search, corridor_builder::CorridorBuilder builder,
@@ -58,12 +63,14 @@ class Planner {
       : search_(std::move(search)),
         builder_(std::move(builder)),
         optimizer_(std::move(optimizer)) {}
-  Status run(const FlatState& start, const FlatState& goal, const Limits& limits, Plan& plan);
+  Status run(const FlatState& start, const std::vector<Vec3>& goals_map,
+             const Limits& limits, Plan& plan);
 
   path_search::PathSearch search_;
   corridor_builder::CorridorBuilder builder_;
   trajectory_optimizer::TrajectoryOptimizer optimizer_;
   std::shared_ptr<const VoxelGrid> grid_;
+  std::optional<corridor_builder::RawMap> raw_;  // for the corridor's margin `sphere`
 };
 
 }  // namespace goshawk::cli

@@ -12,6 +12,13 @@ constexpr const char* kRunHelp =
     "Starts one component, or several in one process, until Ctrl-C.\n"
     "goshawk param describe COMPONENT lists its parameters.\n";
 
+int become_script(const std::string& name, const Arguments& arguments) {
+  Arguments command{"/usr/bin/python3", install_prefix() + "/lib/goshawk/" + name, "--prefix",
+                    install_prefix()};
+  command.insert(command.end(), arguments.begin(), arguments.end());
+  return become(command);
+}
+
 }  // namespace
 
 int run_command(const Arguments& arguments) {
@@ -25,10 +32,11 @@ int run_command(const Arguments& arguments) {
 }
 
 int launch_command(const Arguments& arguments) {
-  Arguments command{"/usr/bin/python3", install_prefix() + "/lib/goshawk/launch.py", "--prefix",
-                    install_prefix()};
-  command.insert(command.end(), arguments.begin(), arguments.end());
-  return become(command);
+  return become_script("launch.py", arguments);
+}
+
+int view_command(const Arguments& arguments) {
+  return become_script("view.py", arguments);
 }
 
 }  // namespace goshawk::cli

@@ -8,9 +8,11 @@ namespace goshawk::cli {
 int plan_command(const Arguments& arguments);
 int world_command(const Arguments& arguments);
 int fly_command(const Arguments& arguments);
+int check_command(const Arguments& arguments);
 int run_command(const Arguments& arguments);
 int launch_command(const Arguments& arguments);
 int conform_command(const Arguments& arguments);
+int view_command(const Arguments& arguments);
 int bench_command(const Arguments& arguments);
 int bench_plan_command(const Arguments& arguments);
 

@@ -293,6 +293,16 @@ class Launch:
             return "    (it left no log)"
 
 
+class ListFiles(argparse.Action):
+    """--list: the installed launch files, one a line, and nothing else."""
+
+    def __call__(self, parser, options, *_):
+        folder = os.path.join(options.prefix, "share/goshawk/launch")
+        for name in sorted(os.listdir(folder)):
+            print(name.removesuffix(".yaml"))
+        parser.exit()
+
+
 def main():
     arguments, extra = sys.argv[1:], []
     if "--ros-args" in arguments:
@@ -306,6 +316,8 @@ def main():
     parser.add_argument("--log-dir", help="folder for the logs (default: a new one in /tmp)")
     parser.add_argument("--json", action="store_true", help="one JSON object a line")
     parser.add_argument("--prefix", required=True, help=argparse.SUPPRESS)
+    parser.add_argument("--list", action=ListFiles, nargs=0,
+                        help="print the names of the installed launch files, and end")
     parser.add_argument("--stop-with-parent", action="store_true",
                         help="stop as on Ctrl-C when the process that started this one ends")
     options = parser.parse_args(arguments)

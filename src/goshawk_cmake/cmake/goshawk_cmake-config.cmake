@@ -5,6 +5,7 @@
 #   goshawk_component(NAME CLASS SOURCES LINK ...)   a component, loadable by goshawk_container
 #   goshawk_executable(NAME SOURCES LINK ...)        a program, installed to bin/
 #   goshawk_test(NAME SOURCES LINK ...)              a GoogleTest program, one file of results each
+#   goshawk_fuzz(NAME RUNS SOURCES LINK CORPUS)     a libFuzzer program and a short run of it
 #   goshawk_benchmark(NAME SOURCES LINK ...)         a Google Benchmark program, built with the tests
 #   goshawk_package_install(DEPENDENCIES ...)        last: headers, config/, targets, CMake package
 
@@ -117,6 +118,38 @@ function(goshawk_test)
     set(arg_TIMEOUT 300)
   endif()
   set_tests_properties(${arg_NAME} PROPERTIES TIMEOUT ${arg_TIMEOUT} LABELS "${arg_LABELS}")
+endfunction()
+
+# goshawk_fuzz(NAME query_fuzz RUNS 20000 SOURCES ... LINK ... CORPUS test/corpus): SOURCES are
+# compiled by clang++ with libFuzzer and sanitizers; those of a library that are listed here take
+# the place of the ones in LINK, so that the fuzzer sees their branches. Without clang++ the test is
+# skipped, and says so.
+function(goshawk_fuzz)
+  cmake_parse_arguments(arg "" "NAME;RUNS;CORPUS" "SOURCES;LINK" ${ARGN})
+  if(NOT BUILD_TESTING OR GOSHAWK_SANITIZE)
+    return()
+  endif()
+  find_program(GOSHAWK_CLANGXX clang++)
+  if(NOT GOSHAWK_CLANGXX)
+    message(WARNING "clang++ is missing: ${arg_NAME} is not built and its test is skipped; run tools/setup")
+    add_test(NAME ${arg_NAME} COMMAND ${CMAKE_COMMAND} -E echo "SKIPPED: no clang++")
+    set_tests_properties(${arg_NAME} PROPERTIES SKIP_REGULAR_EXPRESSION "SKIPPED")
+    return()
+  endif()
+  set(fuzzing -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=undefined)
+  add_executable(${arg_NAME} ${arg_SOURCES})
+  target_link_libraries(${arg_NAME} PRIVATE ${arg_LINK})
+  target_compile_options(${arg_NAME} PRIVATE -O1 -g1 ${fuzzing})
+  target_link_options(${arg_NAME} PRIVATE ${fuzzing})
+  set_target_properties(${arg_NAME} PROPERTIES
+    CXX_COMPILER_LAUNCHER ${GOSHAWK_CMAKE_DIR}/goshawk_clang.sh
+    CXX_LINKER_LAUNCHER ${GOSHAWK_CMAKE_DIR}/goshawk_clang.sh)
+  # What is new stays in the build folder; the corpus is read only.
+  set(found ${CMAKE_CURRENT_BINARY_DIR}/${arg_NAME}_corpus)
+  file(MAKE_DIRECTORY ${found})
+  add_test(NAME ${arg_NAME} COMMAND ${arg_NAME} -runs=${arg_RUNS} -seed=1 -max_len=512 -rss_limit_mb=0
+           ${found} ${CMAKE_CURRENT_SOURCE_DIR}/${arg_CORPUS})
+  set_tests_properties(${arg_NAME} PROPERTIES TIMEOUT 120)
 endfunction()
 
 function(goshawk_benchmark)

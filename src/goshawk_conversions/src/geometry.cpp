@@ -162,6 +162,10 @@ goshawk_msgs::msg::Certificate to_msg(const Certificate& c) {
   m.joint_acceleration(c.joint_acceleration_m_s2);
   m.start(c.start_m);
   m.goal(c.goal_m);
+  m.jerk(c.jerk_m_s3);
+  m.start_excess_velocity(c.start_excess_m_s);
+  m.start_excess_acceleration(c.start_excess_m_s2);
+  m.start_excess_time(c.start_excess_s);
   return m;
 }
 

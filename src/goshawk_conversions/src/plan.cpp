@@ -20,8 +20,10 @@ Result<PlanRequest> from_msg(const goshawk_msgs::msg::PlanRequest& m) {
   request.stamp_ns = to_ns(m.header().stamp());
   request.start = from_msg(m.start());
   request.goal = from_msg(m.goal());
+  request.other_goals_map = from_msg(m.other_goals());
   request.goal_yaw_rad = m.goal_yaw();
   request.deadline_s = m.deadline();
+  request.duration_s = m.duration();
   for (const auto& [name, state] :
        {std::pair{"start", &request.start}, std::pair{"goal", &request.goal}}) {
     if (is_finite(*state)) continue;
@@ -30,10 +32,21 @@ Result<PlanRequest> from_msg(const goshawk_msgs::msg::PlanRequest& m) {
                     to_text(state->position) + ", velocity " + to_text(state->velocity) +
                     ", acceleration " + to_text(state->acceleration));
   }
+  for (std::size_t k = 0; k < request.other_goals_map.size(); ++k) {
+    if (request.other_goals_map[k].allFinite()) continue;
+    return fail(ErrorCode::invalid_input, "other goal " + std::to_string(k) +
+                                              " of a plan request is not finite: " +
+                                              to_text(request.other_goals_map[k]));
+  }
   if (!std::isfinite(m.goal_yaw()) || !(m.deadline() >= 0.0 && std::isfinite(m.deadline()))) {
     return fail(ErrorCode::invalid_input,
                 "the goal's yaw or the deadline of a plan request is not finite, or the deadline "
                 "is below zero");
+  }
+  if (!(m.duration() >= 0.0 && std::isfinite(m.duration()))) {
+    return fail(ErrorCode::invalid_input,
+                "the duration of a plan request is " + std::to_string(m.duration()) +
+                    " s: 0 (as fast as the limits allow) or more is meant");
   }
   auto limits = from_msg(m.limits());
   if (!limits) return limits.error();
@@ -47,9 +60,11 @@ goshawk_msgs::msg::PlanRequest to_msg(const PlanRequest& request) {
   m.id(request.id);
   m.start(to_msg(request.start));
   m.goal(to_msg(request.goal));
+  m.other_goals(to_points(request.other_goals_map));
   m.goal_yaw(request.goal_yaw_rad);
   m.limits(to_msg(request.limits));
   m.deadline(request.deadline_s);
+  m.duration(request.duration_s);
   return m;
 }
 
@@ -64,13 +79,17 @@ Status check_deadline(const PlanRequest& request, std::int64_t now_ns) {
 }
 
 Result<Limits> from_msg(const goshawk_msgs::msg::Limits& m) {
-  if (m.norm() > 1) {
-    return fail(ErrorCode::invalid_limits, "the limits' norm is " + std::to_string(m.norm()) +
-                                               ": 0 (Euclidean) or 1 (each component) is meant");
+  if (m.norm() > 2) {
+    return fail(ErrorCode::invalid_limits,
+                "the limits' norm is " + std::to_string(m.norm()) +
+                    ": 0 (Euclidean), 1 (each component) or 2 (horizontal and vertical) is meant");
   }
   const Limits limits{.v_max_m_s = m.v_max(),
                       .a_max_m_s2 = m.a_max(),
-                      .norm = m.norm() == 0 ? LimitNorm::euclidean : LimitNorm::per_axis};
+                      .norm = LimitNorm(m.norm()),
+                      .j_max_m_s3 = m.j_max(),
+                      .v_max_vertical_m_s = m.v_max_vertical(),
+                      .a_max_vertical_m_s2 = m.a_max_vertical()};
   if (auto status = limits.check(); !status) return status.error();
   return limits;
 }
@@ -79,7 +98,10 @@ goshawk_msgs::msg::Limits to_msg(const Limits& limits) {
   goshawk_msgs::msg::Limits m;
   m.v_max(limits.v_max_m_s);
   m.a_max(limits.a_max_m_s2);
-  m.norm(limits.norm == LimitNorm::euclidean ? 0 : 1);
+  m.norm(std::uint8_t(limits.norm));
+  m.j_max(limits.j_max_m_s3);
+  m.v_max_vertical(limits.v_max_vertical_m_s);
+  m.a_max_vertical(limits.a_max_vertical_m_s2);
   return m;
 }
 

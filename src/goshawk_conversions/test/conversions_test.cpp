@@ -41,9 +41,16 @@ TEST(PlanRequestMessage, SurvivesTheRoundTrip) {
   in.stamp_ns = 123'456'789'012;
   in.start = {random_vector(random), random_vector(random), random_vector(random), Vec3::Zero()};
   in.goal.position = random_vector(random);
+  in.other_goals_map = {random_vector(random), random_vector(random)};
   in.goal_yaw_rad = 1.5;
   in.deadline_s = 0.25;
-  in.limits = {.v_max_m_s = 3.0, .a_max_m_s2 = 4.0, .norm = LimitNorm::per_axis};
+  in.duration_s = 12.5;
+  in.limits = {.v_max_m_s = 3.0,
+               .a_max_m_s2 = 4.0,
+               .norm = LimitNorm::per_axis,
+               .j_max_m_s3 = 5.0,
+               .v_max_vertical_m_s = 6.0,
+               .a_max_vertical_m_s2 = 7.0};
   const auto out = from_msg(to_msg(in));
   ASSERT_TRUE(out.ok()) << out.error().message;
   EXPECT_EQ(out->id, in.id);
@@ -52,9 +59,14 @@ TEST(PlanRequestMessage, SurvivesTheRoundTrip) {
   EXPECT_EQ(out->start.velocity, in.start.velocity);
   EXPECT_EQ(out->start.acceleration, in.start.acceleration);
   EXPECT_EQ(out->goal.position, in.goal.position);
+  EXPECT_EQ(out->other_goals_map, in.other_goals_map);
   EXPECT_EQ(out->goal_yaw_rad, in.goal_yaw_rad);
   EXPECT_EQ(out->deadline_s, in.deadline_s);
+  EXPECT_EQ(out->duration_s, in.duration_s);
   EXPECT_EQ(out->limits.norm, LimitNorm::per_axis);
+  EXPECT_EQ(out->limits.j_max_m_s3, in.limits.j_max_m_s3);
+  EXPECT_EQ(out->limits.v_max_vertical_m_s, in.limits.v_max_vertical_m_s);
+  EXPECT_EQ(out->limits.a_max_vertical_m_s2, in.limits.a_max_vertical_m_s2);
 }
 
 TEST(PlanRequestMessage, IsRefusedInAnotherFrame) {
@@ -74,6 +86,10 @@ TEST(PlanRequestMessage, IsRefusedWithAnyNumberNotFinite) {
   EXPECT_EQ(from_msg(m).code(), ErrorCode::invalid_input);
   m = valid_request();
   m.deadline(-1.0);
+  EXPECT_EQ(from_msg(m).code(), ErrorCode::invalid_input);
+  m = valid_request();
+  m.other_goals().resize(2);
+  m.other_goals()[1].x(kNaN);
   EXPECT_EQ(from_msg(m).code(), ErrorCode::invalid_input);
 }
 

@@ -39,6 +39,8 @@ constexpr std::array kNames{
     Named{ErrorCode::tracking_lost, "tracking_lost"},
     Named{ErrorCode::stage_silent, "stage_silent"},
     Named{ErrorCode::io_failed, "io_failed"},
+    Named{ErrorCode::collision, "collision"},
+    Named{ErrorCode::cancelled, "cancelled"},
 };
 
 constexpr auto kCodes = [] {

@@ -118,16 +118,21 @@ bool line_is_free(const VoxelGrid& grid, const Vec3& a_map, const Vec3& b_map) {
   return line_is_free(grid.occupied, grid.geometry.to_grid(a_map), grid.geometry.to_grid(b_map));
 }
 
-std::vector<Index3> supercover(const Vec3& a, const Vec3& b) {
+void supercover(const Vec3& a, const Vec3& b, std::vector<Index3>& cells) {
   constexpr int far = 1 << 30;
   if (!((a.array().abs() < far).all() && (b.array().abs() < far).all())) {
     throw std::invalid_argument("supercover() of a segment that is not finite, or too far away");
   }
-  std::vector<Index3> cells;
+  cells.clear();
   walk(a, b, Bounds{{-far, -far, -far}, {far, far, far}}, [&](Index3 i) {
     cells.push_back(i);
     return true;
   });
+}
+
+std::vector<Index3> supercover(const Vec3& a, const Vec3& b) {
+  std::vector<Index3> cells;
+  supercover(a, b, cells);
   return cells;
 }
 

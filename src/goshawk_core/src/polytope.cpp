@@ -15,28 +15,28 @@ using Vec4 = Eigen::Vector4d;
 // method on its dual, whose basis is four constraints and whose multipliers are the current
 // (x, r): the constraint most violated by it enters. Starts from a tetrahedron so large that it
 // only stays in the basis where the polytope is unbounded.
+//
+// The inverse of the basis is kept and corrected by one pivot an iteration; it is computed anew
+// before the answer is believed, and after every few pivots, so that rounding does not gather.
 class LargestBall {
  public:
-  explicit LargestBall(std::span<const Polytope* const> polytopes) : polytopes_(polytopes) {}
+  explicit LargestBall(std::span<const HalfSpaces> polytopes) : polytopes_(polytopes) {}
 
   Ball solve() {
     if (!finite()) return {Vec3::Zero(), -std::numeric_limits<double>::infinity()};
-    const double far = 1e6;
-    const double s = 1.0 / std::sqrt(3.0);
-    set_basis(0, Vec4(-1, 0, 0, 1), far);
-    set_basis(1, Vec4(0, -1, 0, 1), far);
-    set_basis(2, Vec4(0, 0, -1, 1), far);
-    set_basis(3, Vec4(s, s, s, 1), far);
+    start();
+    bool fresh = true;  // nothing was pivoted since the inverse was computed
     for (int iteration = 0; iteration < 1000; ++iteration) {
-      const Eigen::FullPivLU<Eigen::Matrix4d> lu(basis_);
-      point_ = lu.solve(bound_);
       // Most violated first (few iterations); after many, first violated (cannot cycle for long).
-      if (!find_entering(iteration > 200)) break;
-      const Vec4 weights = basis_.transpose().fullPivLu().solve(Vec4(0, 0, 0, 1));
-      const Vec4 direction = basis_.transpose().fullPivLu().solve(entering_);
-      const int leaving = find_leaving(weights, direction);
-      if (leaving < 0) break;  // cannot be with finite data: the dual is bounded
-      set_basis(leaving, entering_, entering_bound_);
+      if (!find_entering(iteration > 200)) {
+        if (fresh) break;
+        refresh();
+        fresh = true;
+        continue;
+      }
+      if (!pivot()) break;
+      fresh = iteration % kPivotsUntilRefresh == kPivotsUntilRefresh - 1;
+      if (fresh) refresh();
     }
     // The simplex method comes from outside: whatever rounding, or the iteration limit, left
     // undone, the ball that is returned is inside.
@@ -44,70 +44,109 @@ class LargestBall {
   }
 
  private:
+  static constexpr int kPivotsUntilRefresh = 24;
+
   bool finite() const {
-    return std::ranges::all_of(polytopes_, [](const Polytope* p) {
-      return p->A.rows() == p->b.size() && p->A.allFinite() && p->b.allFinite();
+    return std::ranges::all_of(polytopes_, [](const HalfSpaces& p) {
+      using Row = Eigen::Map<const Eigen::VectorXd>;
+      return p.count >= 0 && Row(p.normals, 3 * p.count).allFinite() &&
+             Row(p.offsets, p.count).allFinite();
     });
+  }
+
+  void start() {
+    const double far = 1e6;
+    const double s = 1.0 / std::sqrt(3.0);
+    basis_ << -1, 0, 0, 1, 0, -1, 0, 1, 0, 0, -1, 1, s, s, s, 1;
+    bound_.setConstant(far);
+    refresh();
+  }
+
+  void refresh() {
+    inverse_ = basis_.inverse();
+    point_ = inverse_ * bound_;
   }
 
   // Distance to the nearest face, negative outside.
   double room_at(const Vec3& p) const {
     double room = std::numeric_limits<double>::infinity();
-    for (const Polytope* polytope : polytopes_) {
-      for (int i = 0; i < polytope->faces(); ++i) {
-        room = std::min(room, polytope->b[i] - polytope->A.row(i).dot(p));
+    for (const HalfSpaces& polytope : polytopes_) {
+      const double* n = polytope.normals;
+      for (int i = 0; i < polytope.count; ++i, n += 3) {
+        room = std::min(room, polytope.offsets[i] - (n[0] * p[0] + n[1] * p[1] + n[2] * p[2]));
       }
     }
     return room;
   }
 
+  // The entering constraint takes the place of one of the basis. @return false where none can
+  // leave, which finite data do not allow: the dual is bounded
+  bool pivot() {
+    const Vec4 direction = inverse_.transpose() * entering_;
+    const int leaving = find_leaving(inverse_.row(3).transpose(), direction);
+    if (leaving < 0) return false;
+    const Vec4 column = inverse_.col(leaving) / direction[leaving];
+    point_ -= (entering_.dot(point_) - entering_bound_) * column;
+    Vec4 change = direction;
+    change[leaving] -= 1.0;
+    inverse_.noalias() -= column * change.transpose();
+    basis_.row(leaving) = entering_;
+    bound_[leaving] = entering_bound_;
+    return true;
+  }
+
   // Ratio test. Boxes make ties the rule (weights of zero); of those the largest pivot leaves,
   // which keeps the basis far from singular.
   static int find_leaving(const Vec4& weights, const Vec4& direction) {
-    constexpr double pivot = 1e-9;
+    constexpr double smallest = 1e-9;
     double least = std::numeric_limits<double>::infinity();
     for (int i = 0; i < 4; ++i) {
-      if (direction[i] > pivot) {
+      if (direction[i] > smallest) {
         least = std::min(least, std::max(0.0, weights[i]) / direction[i]);
       }
     }
     int leaving = -1;
     for (int i = 0; i < 4; ++i) {
-      if (direction[i] <= pivot || weights[i] / direction[i] > least + 1e-12) continue;
+      if (direction[i] <= smallest || weights[i] / direction[i] > least + 1e-12) continue;
       if (leaving < 0 || direction[i] > direction[leaving]) leaving = i;
     }
     return leaving;
   }
 
-  void set_basis(int i, const Vec4& row, double bound) {
-    basis_.row(i) = row;
-    bound_[i] = bound;
-  }
-
   bool find_entering(bool first) {
     double worst = 1e-12 * (1.0 + point_.head<3>().cwiseAbs().maxCoeff());
-    bool found = false;
-    for (const Polytope* polytope : polytopes_) {
-      for (int i = 0; i < polytope->faces(); ++i) {
-        const double excess = polytope->A.row(i).dot(point_.head<3>()) + point_[3] - polytope->b[i];
+    const double x = point_[0], y = point_[1], z = point_[2], r = point_[3];
+    const double* row = nullptr;
+    for (const HalfSpaces& polytope : polytopes_) {
+      const double* n = polytope.normals;
+      const double* b = polytope.offsets;
+      for (int i = 0; i < polytope.count && !(first && row); ++i, n += 3) {
+        const double excess = n[0] * x + n[1] * y + n[2] * z + r - b[i];
         if (excess <= worst) continue;
         worst = excess;
-        entering_ << polytope->A.row(i).transpose(), 1.0;
-        entering_bound_ = polytope->b[i];
-        found = true;
-        if (first) return true;
+        row = n;
+        entering_bound_ = b[i];
       }
     }
-    return found;
+    if (row) entering_ << row[0], row[1], row[2], 1.0;
+    return row != nullptr;
   }
 
-  std::span<const Polytope* const> polytopes_;
-  Eigen::Matrix4d basis_;
+  std::span<const HalfSpaces> polytopes_;
+  Eigen::Matrix4d basis_;    // rows are constraints
+  Eigen::Matrix4d inverse_;  // of basis_
   Vec4 bound_;
   Vec4 point_;
   Vec4 entering_;
   double entering_bound_ = 0.0;
 };
+
+// A negative count where the sizes disagree.
+HalfSpaces half_spaces(const Polytope& polytope) {
+  static_assert(Polytope::Normals::IsRowMajor);
+  const int count = polytope.A.rows() == polytope.b.size() ? polytope.faces() : -1;
+  return {polytope.A.data(), polytope.b.data(), count};
+}
 
 }  // namespace
 
@@ -142,14 +181,18 @@ Polytope Polytope::box(const Vec3& lower_map, const Vec3& upper_map) {
   return polytope;
 }
 
+Ball chebyshev_ball(std::span<const HalfSpaces> polytopes) {
+  return LargestBall(polytopes).solve();
+}
+
 Ball chebyshev_ball(const Polytope& polytope) {
-  const Polytope* const parts[] = {&polytope};
-  return LargestBall(parts).solve();
+  const HalfSpaces parts[] = {half_spaces(polytope)};
+  return chebyshev_ball(parts);
 }
 
 Ball chebyshev_ball(const Polytope& a, const Polytope& b) {
-  const Polytope* const parts[] = {&a, &b};
-  return LargestBall(parts).solve();
+  const HalfSpaces parts[] = {half_spaces(a), half_spaces(b)};
+  return chebyshev_ball(parts);
 }
 
 double Corridor::min_overlap_radius_m() const {

@@ -1,5 +1,7 @@
+#include "goshawk/conversions/grid.hpp"
 #include "goshawk/corridor_builder/config.hpp"
 #include "goshawk/corridor_builder/corridor_builder.hpp"
+#include "goshawk/corridor_builder/raw_map.hpp"
 #include "goshawk/runtime/component.hpp"
 #include "goshawk/runtime/map_subscription.hpp"
 #include "goshawk/runtime/stage.hpp"
@@ -9,6 +11,12 @@ namespace {
 
 using namespace goshawk::runtime;
 namespace msg = goshawk_msgs::msg;
+
+/// Before the raw map of a version has come, its grown one serves: the same safety, less room.
+Config on_grown_grid(Config config) {
+  config.margin = "grown_grid";
+  return config;
+}
 
 CorridorBuilder make_builder(const Config& config) {
   auto builder = CorridorBuilder::create(config);
@@ -22,16 +30,34 @@ class CorridorBuilderComponent : public Component {
   explicit CorridorBuilderComponent(Node& node)
       : node_(node),
         builder_(make_builder(node.parameters<Config>())),
+        fallback_(make_builder(on_grown_grid(node.parameters<Config>()))),
         reporter_(node, std::string(builder_.implementation())),
         publisher_(node.advertise<msg::Corridor>("corridor", Qos::reliable_last())),
         map_(node, reporter_) {
     node.subscribe<msg::Path>(
         "path", Qos::reliable_last(),
         [this](const msg::Path& m, const MessageInfo& info) { on_path(m, info); });
+    if (node.parameters<Config>().margin == "sphere") subscribe_raw();
     reporter_.ready("builds corridors with " + std::string(builder_.implementation()));
   }
 
  private:
+  void subscribe_raw() {
+    node_.subscribe<msg::VoxelGrid>("map/voxels/raw", Qos::latched(),
+                                    [this](const msg::VoxelGrid& m, const MessageInfo&) {
+                                      auto grid = conversions::from_msg(m);
+                                      if (!grid) return reporter_.fault(grid.error());
+                                      raw_.emplace(*std::move(grid));
+                                    });
+  }
+
+  Result<Corridor> build(std::span<const Vec3> waypoints) {
+    const VoxelGrid& grid = *map_.grid();
+    if (!raw_ || raw_->version() != grid.version) return fallback_.build(grid, waypoints);
+    const RawObstacles raw = raw_->obstacles(grid.inflation_m);
+    return builder_.build(grid, waypoints, &raw);
+  }
+
   void on_path(const msg::Path& m, const MessageInfo& info) {
     Timing timing{.wire_ns = wire_time_ns(m.header(), info)};
     const auto request = open_request(m.request(), node_.now_ns(), reporter_, timing);
@@ -41,7 +67,7 @@ class CorridorBuilderComponent : public Component {
     }
     const auto waypoints = conversions::waypoints_of(m);
     if (!waypoints) return reporter_.failed(request->id, waypoints.error(), timing);
-    auto [corridor, compute_ns] = timed([&] { return builder_.build(*map_.grid(), *waypoints); });
+    auto [corridor, compute_ns] = timed([&] { return build(*waypoints); });
     timing.compute_ns = compute_ns;
     if (!corridor) return reporter_.failed(request->id, corridor.error(), timing);
     publish(m.request(), *corridor, compute_ns);
@@ -85,6 +111,8 @@ class CorridorBuilderComponent : public Component {
 
   Node& node_;
   CorridorBuilder builder_;
+  CorridorBuilder fallback_;   // margin grown_grid
+  std::optional<RawMap> raw_;  // with margin sphere, once it has come
   StageReporter reporter_;
   Publisher<msg::Corridor> publisher_;
   MapSubscription map_;

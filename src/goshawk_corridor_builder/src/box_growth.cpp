@@ -2,16 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
-#include "goshawk/core/line_of_sight.hpp"
 #include "segment_polytope.hpp"
 
 namespace goshawk::corridor_builder {
 namespace {
 
 constexpr int kBits = BitGrid::kWordBits;
-constexpr double kOnFace = 1e-9;  // [voxel edges]
 
 bool run_is_free(const BitGrid& occupied, int x0, int x1, int y, int z) {
   const BitGrid::Word* row = occupied.row(y, z);
@@ -38,18 +35,6 @@ int& coordinate(Index3& i, int axis) {
 }
 int coordinate(const Index3& i, int axis) {
   return axis == 0 ? i.x : axis == 1 ? i.y : i.z;
-}
-
-bool holds(const Index3& i, const Vec3& p) {
-  for (int a = 0; a < 3; ++a) {
-    const double x = p[a] - coordinate(i, a);
-    if (x < -kOnFace || x > 1.0 + kOnFace) return false;
-  }
-  return true;
-}
-
-bool share_face(const Index3& a, const Index3& b) {
-  return std::abs(a.x - b.x) + std::abs(a.y - b.y) + std::abs(a.z - b.z) == 1;
 }
 
 VoxelBox hull(const VoxelBox& box, const Index3& i) {
@@ -84,8 +69,8 @@ bool add_layer(const BitGrid& occupied, int axis, int side, const VoxelBox& limi
 }
 
 // Whole-numbered faces, rounded to the free side.
-Polytope to_polytope(const VoxelBox& box, const GridGeometry& geometry, const Margins& margins) {
-  std::vector<Plane> planes;
+void planes_of(const VoxelBox& box, const Margins& margins, std::vector<Plane>& planes) {
+  planes.clear();
   for (int axis = 0; axis < 3; ++axis) {
     for (const double side : {-1.0, 1.0}) {
       Plane plane;
@@ -95,9 +80,18 @@ Polytope to_polytope(const VoxelBox& box, const GridGeometry& geometry, const Ma
       planes.push_back(plane);
     }
   }
-  Polytope polytope;
-  to_map(planes, Vec3(box.lo.x, box.lo.y, box.lo.z), geometry, polytope);
-  return polytope;
+}
+
+// Where a segment leaves the cube of a voxel that it meets.
+Vec3 exit_of(const Index3& voxel, const Vec3& p, const Vec3& q) {
+  const Vec3 d = q - p;
+  double t = 1.0;
+  for (int a = 0; a < 3; ++a) {
+    if (std::abs(d[a]) < 1e-12) continue;
+    const double face = coordinate(voxel, a) + (d[a] > 0.0 ? 1 : 0);
+    t = std::clamp((face - p[a]) / d[a], 0.0, t);
+  }
+  return p + t * d;
 }
 
 }  // namespace
@@ -107,10 +101,9 @@ std::optional<Blockage> BoxGrowth::build(const VoxelGrid& grid, std::span<const 
   chain.clear();
   voxels_.clear();
   for (std::size_t i = 0; i + 1 < path.size(); ++i) {
-    if (!walk(grid.occupied, path[i].p_grid, path[i + 1].p_grid)) {
-      const Vec3 last = voxels_.empty() ? path[i].p_grid
-                                        : Vec3(voxels_.back().x + 0.5, voxels_.back().y + 0.5,
-                                               voxels_.back().z + 0.5);
+    if (!walk_.append(grid.occupied, path[i].p_grid, path[i + 1].p_grid, voxels_)) {
+      const Vec3& p = path[i].p_grid;
+      const Vec3 last = voxels_.empty() ? p : exit_of(voxels_.back(), p, path[i + 1].p_grid);
       return Blockage{path[i].segment, last};
     }
   }
@@ -118,55 +111,14 @@ std::optional<Blockage> BoxGrowth::build(const VoxelGrid& grid, std::span<const 
   for (std::size_t begin = 0;;) {
     std::size_t end = begin;
     const VoxelBox box = grow(grid, begin, end);
-    chain.polytopes.push_back(to_polytope(box, grid.geometry, margins));
+    planes_of(box, margins, planes_);
+    to_map(planes_, Vec3(box.lo.x, box.lo.y, box.lo.z), grid.geometry, chain.append());
     if (end + 1 >= voxels_.size()) break;
     chain.joints_map.push_back(grid.geometry.center(voxels_[end]));
     begin = end;
   }
   chain.joints_map.push_back(path.back().p_map);
   return std::nullopt;
-}
-
-// Appends free voxels that the segment meets, from one that holds p to one that holds q. Where
-// the way stops, the last voxel that was reached is appended, for the message.
-bool BoxGrowth::walk(const BitGrid& occupied, const Vec3& p, const Vec3& q) {
-  std::vector<Index3> cells = supercover(p, q);
-  std::erase_if(cells, [&](const Index3& i) { return occupied.test(i); });
-  return trace(cells, p, q);
-}
-
-bool BoxGrowth::trace(const std::vector<Index3>& cells, const Vec3& p, const Vec3& q) {
-  parent_.assign(cells.size(), -2);  // -2: not reached, -1: where the search begins
-  queue_.clear();
-  for (int i = 0; i < int(cells.size()); ++i) {
-    const bool begins =
-        voxels_.empty() ? holds(cells[std::size_t(i)], p) : cells[std::size_t(i)] == voxels_.back();
-    if (!begins) continue;
-    parent_[std::size_t(i)] = -1;
-    queue_.push_back(i);
-  }
-  int found = -1;
-  for (std::size_t head = 0; head < queue_.size() && found < 0; ++head) {
-    const int i = queue_[head];
-    if (holds(cells[std::size_t(i)], q)) found = i;
-    // The cover lists neighbours near each other: a diagonal step spans at most eight cells, a
-    // walk along a face or an edge four abreast.
-    const int first = std::max(0, i - 32);
-    const int last = std::min(int(cells.size()), i + 33);
-    for (int j = first; j < last; ++j) {
-      if (parent_[std::size_t(j)] != -2) continue;
-      if (!share_face(cells[std::size_t(i)], cells[std::size_t(j)])) continue;
-      parent_[std::size_t(j)] = i;
-      queue_.push_back(j);
-    }
-  }
-  const bool reached = found >= 0;
-  if (!reached && !queue_.empty()) found = queue_.back();
-  back_.clear();
-  for (int i = found; i >= 0; i = parent_[std::size_t(i)]) back_.push_back(cells[std::size_t(i)]);
-  const std::size_t known = voxels_.empty() || back_.empty() ? 0 : 1;
-  voxels_.insert(voxels_.end(), back_.rbegin() + std::ptrdiff_t(known), back_.rend());
-  return reached;
 }
 
 // @param end the last voxel of the path, counted on from begin, that is inside

@@ -9,6 +9,7 @@
 #include "goshawk/corridor_builder/config.hpp"
 #include "obstacle_boxes.hpp"
 #include "separating_plane.hpp"
+#include "voxel_walk.hpp"
 
 namespace goshawk::corridor_builder {
 
@@ -25,15 +26,12 @@ class BoxGrowth {
                                 const Margins& margins, Chain& chain);
 
  private:
-  bool walk(const BitGrid& occupied, const Vec3& p, const Vec3& q);
-  bool trace(const std::vector<Index3>& cells, const Vec3& p, const Vec3& q);
   VoxelBox grow(const VoxelGrid& grid, std::size_t begin, std::size_t& end) const;
 
   Config config_;
   std::vector<Index3> voxels_;  // of the path, each shares a face with the next
-  std::vector<int> parent_;
-  std::vector<int> queue_;
-  std::vector<Index3> back_;
+  VoxelWalk walk_;
+  std::vector<Plane> planes_;
 };
 
 }  // namespace goshawk::corridor_builder

@@ -8,15 +8,14 @@
 
 #include "box_growth.hpp"
 #include "chain.hpp"
-#include "joint_relaxation.hpp"
 #include "joints.hpp"
-#include "segment_polytope.hpp"
+#include "path_wrapper.hpp"
 
 namespace goshawk::corridor_builder {
 namespace {
 
 constexpr double kLeastOverlap_m = 1e-6;
-constexpr double kSpare = 0.499;        // [voxel edges] half a voxel, less what planes keep away
+constexpr double kMostRadius = 1000.0;  // [voxel edges] of a vehicle
 constexpr double kMostRounding = 1e-5;  // [voxel edges] beyond it planes are not worth the name
 
 std::string segment_text(std::span<const Vec3> path, int k) {
@@ -29,6 +28,19 @@ std::string number_text(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.3g", value);
   return text;
+}
+
+// Is a voxel at p, or one that touches it, blocked because it was never measured?
+bool touches_unknown(const VoxelGrid& grid, const Vec3& p) {
+  if (!grid.unknown_is_occupied) return false;
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    const Vec3 side((corner & 1U) ? 1e-6 : -1e-6, (corner & 2U) ? 1e-6 : -1e-6,
+                    (corner & 4U) ? 1e-6 : -1e-6);
+    const Vec3 f = (p + side).array().floor();
+    const Index3 i{int(f.x()), int(f.y()), int(f.z())};
+    if (grid.occupied.contains(i) && grid.occupied.get(i) && !grid.is_known(i)) return true;
+  }
+  return false;
 }
 
 // Every fault of a config, by its own description.
@@ -60,47 +72,75 @@ struct Faults {
 
 class CorridorBuilder::Impl {
  public:
-  explicit Impl(const Config& c) : config(c), segment_polytope_(c), box_growth_(c) {}
+  explicit Impl(const Config& c) : config(c), path_wrapper_(c), box_growth_(c) {}
 
-  Result<Corridor> build(const VoxelGrid& grid, std::span<const Vec3> path);
+  Status build(const VoxelGrid& grid, const RawObstacles* raw, std::span<const Vec3> path,
+               Corridor& corridor);
 
   Config config;
 
  private:
   Status check_grid(const VoxelGrid& grid);
+  Status check_raw(const VoxelGrid& grid, const RawObstacles* raw) const;
   Status check_path(const VoxelGrid& grid, std::span<const Vec3> path) const;
   Status check_room(std::span<const Vec3> path) const;
-  void split(const VoxelGrid& grid, std::span<const Vec3> path);
-  std::optional<Blockage> wrap(const VoxelGrid& grid);
-  std::size_t covered_until(const Polytope& polytope, std::size_t end, double spare_m) const;
+  ObstacleLayers layers(const VoxelGrid& grid, const RawObstacles* raw) const;
+  void improve(double resolution_m);
+  void write(Corridor& corridor) const;
   Error blocked(const VoxelGrid& grid, std::span<const Vec3> path, const Blockage& at) const;
 
-  SegmentPolytope segment_polytope_;
+  PathWrapper path_wrapper_;
   BoxGrowth box_growth_;
-  JointRelaxation relaxation_;
   Margins margins_;
   std::vector<PathPoint> points_;
   Chain chain_;
-  std::vector<Ball> overlaps_;
 };
 
-Result<Corridor> CorridorBuilder::Impl::build(const VoxelGrid& grid, std::span<const Vec3> path) {
-  if (auto status = check_grid(grid); !status) return status.error();
-  if (auto status = check_path(grid, path); !status) return status.error();
-  split(grid, path);
+Status CorridorBuilder::Impl::build(const VoxelGrid& grid, const RawObstacles* raw,
+                                    std::span<const Vec3> path, Corridor& corridor) {
+  if (auto status = check_grid(grid); !status) return status;
+  if (auto status = check_raw(grid, raw); !status) return status;
+  if (auto status = check_path(grid, path); !status) return status;
+  split_path(grid.geometry, path, config.max_segment_m, points_);
   const auto blockage =
-      config.generator == "box" ? box_growth_.build(grid, points_, margins_, chain_) : wrap(grid);
+      config.generator == "box"
+          ? box_growth_.build(grid, points_, margins_, chain_)
+          : path_wrapper_.wrap(grid, layers(grid, raw), margins_, points_, chain_);
   if (blockage) return blocked(grid, path, *blockage);
-  measure_overlaps(chain_.polytopes, overlaps_);
-  for (int k = 0; k < config.relax_passes && config.generator != "box"; ++k) {
-    relaxation_.relax(grid, config.wanted_overlap_voxels * grid.geometry.resolution_m, margins_,
-                      segment_polytope_, chain_, overlaps_);
+  improve(grid.geometry.resolution_m);
+  if (auto status = check_room(path); !status) return status;
+  settle_joints(config.joint_clearance_voxels * grid.geometry.resolution_m, chain_);
+  write(corridor);
+  return success();
+}
+
+ObstacleLayers CorridorBuilder::Impl::layers(const VoxelGrid& grid, const RawObstacles* raw) const {
+  if (config.margin != "sphere") return {{{{&grid.occupied, 0.0}, {}}}, grid.geometry};
+  const double radius = raw->radius_m / grid.geometry.resolution_m;
+  return {{{{raw->occupied, radius}, {raw->forbidden, 0.0}}}, grid.geometry};
+}
+
+void CorridorBuilder::Impl::improve(double resolution_m) {
+  if (config.generator == "box") measure_overlaps(chain_);
+  if (!config.drop_covered) return;
+  const bool boxes = config.generator == "box";  // which measure no room around points
+  auto room_m = [&](const PathPoint& point) {
+    return (boxes ? kHalfVoxel : point.wanted) * resolution_m;
+  };
+  drop_covered(resolution_m, room_m(points_.front()), room_m(points_.back()), chain_);
+}
+
+// Into memory that the caller keeps.
+void CorridorBuilder::Impl::write(Corridor& corridor) const {
+  using Normals = Eigen::Map<const Polytope::Normals>;
+  corridor.waypoints_map.assign(chain_.joints_map.begin(), chain_.joints_map.end());
+  corridor.overlaps.assign(chain_.overlaps.begin(), chain_.overlaps.end());
+  corridor.polytopes.resize(chain_.size());
+  for (std::size_t k = 0; k < chain_.size(); ++k) {
+    const HalfSpaces faces = chain_[k].view();
+    corridor.polytopes[k].A = Normals(faces.normals, faces.count, 3);
+    corridor.polytopes[k].b = Eigen::Map<const Eigen::VectorXd>(faces.offsets, faces.count);
   }
-  if (config.drop_covered) drop_covered(grid.geometry.resolution_m, chain_, overlaps_);
-  if (auto status = check_room(path); !status) return status.error();
-  settle_joints(config.joint_clearance_voxels * grid.geometry.resolution_m, overlaps_, chain_);
-  // The answer is moved out: nothing else is allocated once the working memory has grown.
-  return Corridor{std::move(chain_.joints_map), std::move(chain_.polytopes), std::move(overlaps_)};
 }
 
 // Sets the margins for the map's coordinates as well.
@@ -113,6 +153,27 @@ Status CorridorBuilder::Impl::check_grid(const VoxelGrid& grid) {
   return fail(ErrorCode::invalid_input,
               "the map's origin " + to_text(grid.geometry.origin_map) +
                   " is too far away for exact planes: choose a map frame nearer to the map");
+}
+
+Status CorridorBuilder::Impl::check_raw(const VoxelGrid& grid, const RawObstacles* raw) const {
+  if (config.margin != "sphere" || config.generator == "box") return success();
+  if (raw == nullptr || raw->occupied == nullptr) {
+    return fail(ErrorCode::invalid_input,
+                "margin 'sphere' needs the map before obstacles were grown: give it, or choose "
+                "margin 'grown_grid'");
+  }
+  const Index3 size = grid.geometry.size;
+  if (!(raw->occupied->size() == size) ||
+      (raw->forbidden != nullptr && !(raw->forbidden->size() == size))) {
+    return fail(ErrorCode::invalid_input, "the map before growing has " +
+                                              to_text(raw->occupied->size()) +
+                                              " voxels, the grown one " + to_text(size));
+  }
+  const double radius = raw->radius_m / grid.geometry.resolution_m;
+  if (radius >= 0.0 && radius <= kMostRadius) return success();
+  return fail(ErrorCode::invalid_input, "the vehicle's radius is " + number_text(raw->radius_m) +
+                                            " m: it must be at least 0 and at most " +
+                                            number_text(kMostRadius) + " voxels");
 }
 
 Status CorridorBuilder::Impl::check_path(const VoxelGrid& grid, std::span<const Vec3> path) const {
@@ -143,14 +204,14 @@ Status CorridorBuilder::Impl::check_path(const VoxelGrid& grid, std::span<const 
 // Obstacles that touch each other leave a path between them, but no room to fly.
 Status CorridorBuilder::Impl::check_room(std::span<const Vec3> path) const {
   const char* squeezes = ": the path squeezes between obstacles that touch; search it without";
-  const Polytope& first = chain_.polytopes.front();
+  const Faces& first = chain_[0];
   const Vec3 middle = 0.5 * (chain_.joints_map[0] + chain_.joints_map[1]);
-  if (overlaps_.empty() && first.violation(middle) > -kLeastOverlap_m &&
-      !(chebyshev_ball(first).radius_m > kLeastOverlap_m)) {
+  if (chain_.overlaps.empty() && first.room(middle) < kLeastOverlap_m &&
+      !(largest_ball(first).radius_m > kLeastOverlap_m)) {
     return fail(ErrorCode::segment_blocked, segment_text(path, 0) + " has no room" + squeezes);
   }
-  for (std::size_t k = 0; k < overlaps_.size(); ++k) {
-    if (overlaps_[k].radius_m > kLeastOverlap_m) continue;
+  for (std::size_t k = 0; k < chain_.overlaps.size(); ++k) {
+    if (chain_.overlaps[k].radius_m > kLeastOverlap_m) continue;
     return fail(ErrorCode::corridor_disjoint, "polytopes " + std::to_string(k) + " and " +
                                                   std::to_string(k + 1) + " share no ball near " +
                                                   to_text(chain_.joints_map[k + 1]) + squeezes);
@@ -158,58 +219,16 @@ Status CorridorBuilder::Impl::check_room(std::span<const Vec3> path) const {
   return success();
 }
 
-// Long segments in equal parts; waypoints that repeat are left out, but for a path of no length.
-void CorridorBuilder::Impl::split(const VoxelGrid& grid, std::span<const Vec3> path) {
-  points_.clear();
-  auto add = [&](const Vec3& p, std::size_t segment) {
-    points_.push_back({p, grid.geometry.to_grid(p), int(segment)});
-  };
-  add(path[0], 0);
-  for (std::size_t i = 0; i + 1 < path.size(); ++i) {
-    const double length = (path[i + 1] - path[i]).norm();
-    const bool last = i + 2 == path.size();
-    if (length == 0.0 && !(last && points_.size() == 1)) continue;
-    points_.back().segment = int(i);
-    const double parts = std::max(1.0, std::ceil(length / config.max_segment_m));
-    for (double k = 1.0; k < parts; ++k) {
-      add(path[i] + (k / parts) * (path[i + 1] - path[i]), i);
-    }
-    add(path[i + 1], i);
-  }
-  points_.back().p_map = path.back();
-}
-
-// The ellipsoid generator, segment by segment; parts of the path that the polytope before holds
-// with half a voxel to spare need none of their own.
-std::optional<Blockage> CorridorBuilder::Impl::wrap(const VoxelGrid& grid) {
-  chain_.clear();
-  chain_.joints_map.push_back(points_.front().p_map);
-  for (std::size_t i = 0; i + 1 < points_.size();) {
-    Polytope polytope;
-    const auto at =
-        segment_polytope_.build(grid, points_[i].p_grid, points_[i + 1].p_grid, margins_, polytope);
-    if (at) return Blockage{points_[i].segment, *at};
-    i = config.drop_covered ? covered_until(polytope, i + 1, kSpare * grid.geometry.resolution_m)
-                            : i + 1;
-    chain_.joints_map.push_back(points_[i].p_map);
-    chain_.polytopes.push_back(std::move(polytope));
-  }
-  return std::nullopt;
-}
-
-std::size_t CorridorBuilder::Impl::covered_until(const Polytope& polytope, std::size_t end,
-                                                 double spare_m) const {
-  while (end + 1 < points_.size() && polytope.violation(points_[end + 1].p_map) <= -spare_m) ++end;
-  return end;
-}
-
 Error CorridorBuilder::Impl::blocked(const VoxelGrid& grid, std::span<const Vec3> path,
                                      const Blockage& at) const {
   const Vec3 place = grid.geometry.origin_map + grid.geometry.resolution_m * at.p_grid;
-  return fail(ErrorCode::segment_blocked,
-              segment_text(path, at.segment) + " is blocked near " + to_text(place) +
-                  ": an obstacle (grown by " + number_text(grid.inflation_m) +
-                  " m) is in the way; search the path on this map again");
+  const std::string what =
+      touches_unknown(grid, at.p_grid)
+          ? "space that was never measured counts as an obstacle there"
+          : "an obstacle (grown by " + number_text(grid.inflation_m) + " m) is in the way";
+  return fail(ErrorCode::segment_blocked, segment_text(path, at.segment) + " is blocked near " +
+                                              to_text(place) + ": " + what +
+                                              "; search the path on this map again");
 }
 
 Result<CorridorBuilder> CorridorBuilder::create(const Config& config) {
@@ -224,9 +243,18 @@ CorridorBuilder::CorridorBuilder(CorridorBuilder&&) noexcept = default;
 CorridorBuilder& CorridorBuilder::operator=(CorridorBuilder&&) noexcept = default;
 CorridorBuilder::~CorridorBuilder() = default;
 
-Result<Corridor> CorridorBuilder::build(const VoxelGrid& grid,
-                                        std::span<const Vec3> waypoints_map) {
-  return impl_->build(grid, waypoints_map);
+Result<Corridor> CorridorBuilder::build(const VoxelGrid& grid, std::span<const Vec3> waypoints_map,
+                                        const RawObstacles* raw) {
+  Corridor corridor;
+  if (auto status = impl_->build(grid, raw, waypoints_map, corridor); !status) {
+    return status.error();
+  }
+  return corridor;
+}
+
+Status CorridorBuilder::build(const VoxelGrid& grid, std::span<const Vec3> waypoints_map,
+                              const RawObstacles* raw, Corridor& corridor) {
+  return impl_->build(grid, raw, waypoints_map, corridor);
 }
 
 std::string_view CorridorBuilder::implementation() const {

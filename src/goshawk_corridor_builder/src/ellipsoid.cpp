@@ -10,62 +10,92 @@ namespace {
 constexpr double kShortestAxis = 0.05;  // [voxel edges]
 constexpr double kTouching = 1.0 - 1e-9;
 
-// Minimises z' M z over the coordinates that are free (bit set in `free`), the others held.
-Vec3 minimise_free(const Mat3& m, const Vec3& z, unsigned free) {
-  Vec3 result = z;
-  const Vec3 held((free & 1U) ? 0.0 : z[0], (free & 2U) ? 0.0 : z[1], (free & 4U) ? 0.0 : z[2]);
-  const Vec3 pull = m * held;
-  int axes[3];
-  int n = 0;
-  for (int i = 0; i < 3; ++i) {
-    if (free & (1U << i)) axes[n++] = i;
-  }
-  if (n == 3) return Vec3::Zero();
-  if (n == 1) result[axes[0]] = -pull[axes[0]] / m(axes[0], axes[0]);
-  if (n == 2) {
-    const int i = axes[0];
-    const int j = axes[1];
-    const double det = m(i, i) * m(j, j) - m(i, j) * m(i, j);
-    result[i] = (-pull[i] * m(j, j) + pull[j] * m(i, j)) / det;
-    result[j] = (-pull[j] * m(i, i) + pull[i] * m(i, j)) / det;
-  }
-  return result;
-}
+// z' M z over a box lo <= z <= hi by active bounds, in plain arrays: this is the inner loop.
+struct BoundedMinimum {
+  const double* m;  // 3 x 3, symmetric
+  double lo[3], hi[3], z[3];
+  unsigned free = 0;  // bit i set: coordinate i is between its bounds
 
-// Moves from z towards target until the first bound of a free coordinate.
-// @return that coordinate, or -1 where target is reached
-int step_to_bound(Vec3& z, const Vec3& target, const Vec3& lo, const Vec3& hi, unsigned free) {
-  double step = 1.0;
-  int blocking = -1;
-  double bound = 0.0;
-  for (int i = 0; i < 3; ++i) {
-    if (!(free & (1U << i)) || (target[i] >= lo[i] && target[i] <= hi[i])) continue;
-    const double end = target[i] < lo[i] ? lo[i] : hi[i];
-    const double t = (end - z[i]) / (target[i] - z[i]);
-    if (t > step) continue;
-    step = t;
-    blocking = i;
-    bound = end;
+  // The minimum over the free coordinates, the others held.
+  void minimise_free(double* target) const {
+    for (int i = 0; i < 3; ++i) target[i] = z[i];
+    switch (free) {
+      case 1U:
+        return minimise_one(target, 0, 1, 2);
+      case 2U:
+        return minimise_one(target, 1, 2, 0);
+      case 4U:
+        return minimise_one(target, 2, 0, 1);
+      case 3U:
+        return minimise_two(target, 0, 1, 2);
+      case 6U:
+        return minimise_two(target, 1, 2, 0);
+      case 5U:
+        return minimise_two(target, 2, 0, 1);
+      case 7U:
+        target[0] = target[1] = target[2] = 0.0;
+        return;
+      default:
+        return;
+    }
   }
-  z += step * (target - z);
-  if (blocking >= 0) z[blocking] = bound;
-  return blocking;
-}
 
-// The held coordinate whose bound is pulled away from hardest, or -1 at the optimum.
-int coordinate_to_release(const Mat3& m, const Vec3& z, const Vec3& lo, unsigned free) {
-  const Vec3 gradient = m * z;
-  double worst = -1e-12 * gradient.cwiseAbs().maxCoeff();
-  int release = -1;
-  for (int i = 0; i < 3; ++i) {
-    if (free & (1U << i)) continue;
-    const double multiplier = z[i] == lo[i] ? gradient[i] : -gradient[i];
-    if (multiplier >= worst) continue;
-    worst = multiplier;
-    release = i;
+  void minimise_one(double* target, int i, int j, int k) const {
+    target[i] = -(m[3 * i + j] * z[j] + m[3 * i + k] * z[k]) / m[3 * i + i];
   }
-  return release;
-}
+
+  void minimise_two(double* target, int i, int j, int k) const {
+    const double pull_i = m[3 * i + k] * z[k];
+    const double pull_j = m[3 * j + k] * z[k];
+    const double det = m[3 * i + i] * m[3 * j + j] - m[3 * i + j] * m[3 * i + j];
+    target[i] = (-pull_i * m[3 * j + j] + pull_j * m[3 * i + j]) / det;
+    target[j] = (-pull_j * m[3 * i + i] + pull_i * m[3 * i + j]) / det;
+  }
+
+  // Moves towards target until the first bound of a free coordinate, which then is held.
+  // @return false where target is reached
+  bool step_to_bound(const double* target) {
+    double step = 1.0;
+    int blocking = -1;
+    double bound = 0.0;
+    for (int i = 0; i < 3; ++i) {
+      if (!(free & (1U << i)) || (target[i] >= lo[i] && target[i] <= hi[i])) continue;
+      const double end = target[i] < lo[i] ? lo[i] : hi[i];
+      const double t = (end - z[i]) / (target[i] - z[i]);
+      if (t > step) continue;
+      step = t;
+      blocking = i;
+      bound = end;
+    }
+    for (int i = 0; i < 3; ++i) z[i] += step * (target[i] - z[i]);
+    if (blocking < 0) return false;
+    z[blocking] = bound;
+    free &= ~(1U << blocking);
+    return true;
+  }
+
+  // Frees the held coordinate whose bound is pulled away from hardest. @return false at the optimum
+  bool release() {
+    double gradient[3];
+    double largest = 0.0;
+    for (int i = 0; i < 3; ++i) {
+      gradient[i] = m[3 * i] * z[0] + m[3 * i + 1] * z[1] + m[3 * i + 2] * z[2];
+      largest = std::max(largest, std::abs(gradient[i]));
+    }
+    double worst = -1e-12 * largest;
+    int best = -1;
+    for (int i = 0; i < 3; ++i) {
+      if (free & (1U << i)) continue;
+      const double multiplier = z[i] == lo[i] ? gradient[i] : -gradient[i];
+      if (multiplier >= worst) continue;
+      worst = multiplier;
+      best = i;
+    }
+    if (best < 0) return false;
+    free |= 1U << best;
+    return true;
+  }
+};
 
 struct Frame {
   Vec3 u1, u2, u3;  // orthonormal
@@ -99,9 +129,11 @@ double shrink_sides(const Frame& f, double a, const Vec3& center, const BoxSet& 
   double b = a;
   Ellipsoid e{center, metric_of(f, a, b, b)};
   for (std::size_t i = 0; i < boxes.size(); ++i) {
-    if (!meets_sphere(boxes.lower(i), boxes.upper(i), center, a)) continue;
+    const Vec3 lower = boxes.lower(i), upper = boxes.upper(i);
+    if (!meets_sphere(lower, upper, center, a)) continue;
+    if (squared_at_least(e, lower, upper) >= kTouching) continue;
     for (int k = 0; k < 12 && b > kShortestAxis; ++k) {
-      const Nearest at = nearest_in_box(e, boxes.lower(i), boxes.upper(i));
+      const Nearest at = nearest_in_box(e, lower, upper);
       if (at.squared >= kTouching) break;
       const double x = f.u1.dot(at.offset);
       const double rest = std::max(1.0 - x * x / (a * a), 1e-12);
@@ -117,9 +149,11 @@ double shrink_third(const Frame& f, double a, double b, const Vec3& center, cons
   double c = a;
   Ellipsoid e{center, metric_of(f, a, b, c)};
   for (std::size_t i = 0; i < boxes.size(); ++i) {
-    if (!meets_sphere(boxes.lower(i), boxes.upper(i), center, a)) continue;
+    const Vec3 lower = boxes.lower(i), upper = boxes.upper(i);
+    if (!meets_sphere(lower, upper, center, a)) continue;
+    if (squared_at_least(e, lower, upper) >= kTouching) continue;
     for (int k = 0; k < 12 && c > b; ++k) {
-      const Nearest at = nearest_in_box(e, boxes.lower(i), boxes.upper(i));
+      const Nearest at = nearest_in_box(e, lower, upper);
       if (at.squared >= kTouching) break;
       const double x = f.u1.dot(at.offset) / a;
       const double y = f.u2.dot(at.offset) / b;
@@ -133,24 +167,38 @@ double shrink_third(const Frame& f, double a, double b, const Vec3& center, cons
 
 }  // namespace
 
-Nearest nearest_in_box(const Ellipsoid& ellipsoid, const Vec3& lower, const Vec3& upper) {
-  const Mat3& m = ellipsoid.metric;
-  const Vec3 lo = lower - ellipsoid.center;
-  const Vec3 hi = upper - ellipsoid.center;
-  Vec3 z = Vec3::Zero().cwiseMax(lo).cwiseMin(hi);
-  unsigned free = 0;
-  for (int i = 0; i < 3; ++i) free |= (lo[i] < 0.0 && hi[i] > 0.0) ? 1U << i : 0U;
-  for (int iteration = 0; iteration < 16; ++iteration) {
-    const int blocking = step_to_bound(z, minimise_free(m, z, free), lo, hi, free);
-    if (blocking >= 0) {
-      free &= ~(1U << blocking);
-      continue;
-    }
-    const int release = coordinate_to_release(m, z, lo, free);
-    if (release < 0) break;
-    free |= 1U << release;
+double squared_at_least(const Ellipsoid& ellipsoid, const Vec3& lower, const Vec3& upper) {
+  const double* m = ellipsoid.metric.data();
+  double lo[3], hi[3], z[3];
+  for (int i = 0; i < 3; ++i) {
+    lo[i] = lower[i] - ellipsoid.center[i];
+    hi[i] = upper[i] - ellipsoid.center[i];
+    z[i] = std::min(std::max(0.0, lo[i]), hi[i]);
   }
-  return {z, z.dot(m * z)};
+  double bound = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    const double g = m[3 * i] * z[0] + m[3 * i + 1] * z[1] + m[3 * i + 2] * z[2];
+    bound += g * (2.0 * (g > 0.0 ? lo[i] : hi[i]) - z[i]);
+  }
+  return std::max(0.0, bound);
+}
+
+Nearest nearest_in_box(const Ellipsoid& ellipsoid, const Vec3& lower, const Vec3& upper) {
+  BoundedMinimum at;
+  at.m = ellipsoid.metric.data();
+  for (int i = 0; i < 3; ++i) {
+    at.lo[i] = lower[i] - ellipsoid.center[i];
+    at.hi[i] = upper[i] - ellipsoid.center[i];
+    at.z[i] = std::min(std::max(0.0, at.lo[i]), at.hi[i]);
+    at.free |= (at.lo[i] < 0.0 && at.hi[i] > 0.0) ? 1U << i : 0U;
+  }
+  for (int iteration = 0; iteration < 16; ++iteration) {
+    double target[3];
+    at.minimise_free(target);
+    if (!at.step_to_bound(target) && !at.release()) break;
+  }
+  const Vec3 z(at.z[0], at.z[1], at.z[2]);
+  return {z, z.dot(ellipsoid.metric * z)};
 }
 
 Ellipsoid shrink_around_segment(const Vec3& p, const Vec3& q, const BoxSet& boxes) {

@@ -25,6 +25,10 @@ struct Nearest {
 /// @param lower, upper corners of the box
 Nearest nearest_in_box(const Ellipsoid& ellipsoid, const Vec3& lower, const Vec3& upper);
 
+/// A lower bound of nearest_in_box().squared for a fraction of its cost: by convexity the metric
+/// lies above its tangent at the box's Euclidean nearest point.
+double squared_at_least(const Ellipsoid& ellipsoid, const Vec3& lower, const Vec3& upper);
+
 /// The thesis' first ellipsoid: the segment pq is its main axis; the second semi-axis is as long
 /// as obstacles let a spheroid's be, the third as long as they let it be then; none exceeds half
 /// the segment. Where obstacles come nearer than 0.05 voxel edges the axis stays there, and the

@@ -40,39 +40,85 @@ Cone cone_of(const Shape& s, const Plane& plane) {
   return {plane.offset - plane.normal.dot(s.c()), s.stretch(plane.normal)};
 }
 
-// Minus the objective; infinite where infeasible.
-double merit(const Shape& s, std::span<const Plane> planes, double weight) {
-  if (!(s.least_axis() > 0.0)) return std::numeric_limits<double>::infinity();
+// The barrier's two parts, to be weighted: infinite where infeasible.
+struct Merit {
+  double shape = std::numeric_limits<double>::infinity();  // -log det L
+  double cones = 0.0;                                      // -sum of log(cone values)
+
+  double at(double weight) const { return shape + weight * cones; }
+};
+
+Merit merit(const Shape& s, std::span<const Plane> planes) {
+  if (!(s.least_axis() > 0.0)) return {};
   double product = 1.0;
-  double barrier = 0.0;
+  double sum = 0.0;
   for (const Plane& plane : planes) {
     const Cone cone = cone_of(s, plane);
-    if (!cone.inside()) return std::numeric_limits<double>::infinity();
+    if (!cone.inside()) return {};
     product *= cone.value();
     if (product < 1e-100 || product > 1e100) {
-      barrier += std::log(product);
+      sum += std::log(product);
       product = 1.0;
     }
   }
-  return -std::log(s.determinant()) - weight * (barrier + std::log(product));
+  return {-std::log(s.determinant()), -(sum + std::log(product))};
 }
 
+// Adds to the lower triangle of the Hessian.
 void add_cone(const Cone& cone, const Vec3& n, double weight, Vec9& gradient, Mat9& hessian) {
   const double value = cone.value();
-  Vec9 g;  // half the gradient of the cone's value
-  g << -cone.t * n, -cone.u[0] * n, -cone.u[1] * n.tail<2>(), -cone.u[2] * n[2];
-  gradient -= (2.0 * weight / value) * g;
-  hessian.noalias() += (4.0 * weight / (value * value)) * g * g.transpose();
   const double k = 2.0 * weight / value;
-  const Mat3 outer = k * n * n.transpose();
-  hessian.block<3, 3>(0, 0) -= outer;
-  hessian.block<3, 3>(3, 3) += outer;
-  hessian.block<2, 2>(6, 6) += outer.bottomRightCorner<2, 2>();
-  hessian(8, 8) += outer(2, 2);
+  const double* v = n.data();
+  const double* u = cone.u.data();
+  // Half the gradient of the cone's value.
+  const double g[9] = {-cone.t * v[0], -cone.t * v[1], -cone.t * v[2], -u[0] * v[0], -u[0] * v[1],
+                       -u[0] * v[2],   -u[1] * v[1],   -u[1] * v[2],   -u[2] * v[2]};
+  const double scale = 4.0 * weight / (value * value);
+  double* h = hessian.data();
+  for (int j = 0; j < 9; ++j) {
+    gradient[j] -= k * g[j];
+    const double f = scale * g[j];
+    for (int i = j; i < 9; ++i) h[9 * j + i] += f * g[i];
+  }
+  for (int j = 0; j < 3; ++j) {
+    const double f = k * v[j];
+    for (int i = j; i < 3; ++i) {
+      h[9 * j + i] -= f * v[i];
+      h[9 * (3 + j) + 3 + i] += f * v[i];
+      if (j > 0) h[9 * (5 + j) + 5 + i] += f * v[i];
+    }
+  }
+  h[9 * 8 + 8] += k * v[2] * v[2];
+}
+
+// Solves H x = -g by Cholesky's method on the lower triangle. @return false where H is not
+// positive definite
+bool solve_newton(Mat9& hessian, const Vec9& gradient, Vec9& x) {
+  double* h = hessian.data();
+  for (int j = 0; j < 9; ++j) {
+    double* column = h + 9 * j;
+    if (!(column[j] > 0.0)) return false;
+    const double inverse = 1.0 / std::sqrt(column[j]);
+    for (int i = j; i < 9; ++i) column[i] *= inverse;
+    for (int k = j + 1; k < 9; ++k) {
+      const double f = column[k];
+      for (int i = k; i < 9; ++i) h[9 * k + i] -= f * column[i];
+    }
+  }
+  for (int j = 0; j < 9; ++j) x[j] = -gradient[j];
+  for (int j = 0; j < 9; ++j) {
+    x[j] /= h[9 * j + j];
+    for (int i = j + 1; i < 9; ++i) x[i] -= h[9 * j + i] * x[j];
+  }
+  for (int j = 8; j >= 0; --j) {
+    for (int i = j + 1; i < 9; ++i) x[j] -= h[9 * j + i] * x[i];
+    x[j] /= h[9 * j + j];
+  }
+  return true;
 }
 
 // One damped Newton step. @return false where no step helps
-bool newton_step(Shape& s, std::span<const Plane> planes, double weight) {
+bool newton_step(Shape& s, Merit& here, std::span<const Plane> planes, double weight) {
   Vec9 gradient = Vec9::Zero();
   Mat9 hessian = Mat9::Zero();
   for (const int i : {3, 6, 8}) {
@@ -82,14 +128,17 @@ bool newton_step(Shape& s, std::span<const Plane> planes, double weight) {
   for (const Plane& plane : planes) {
     add_cone(cone_of(s, plane), plane.normal, weight, gradient, hessian);
   }
-  const Vec9 step = -hessian.llt().solve(gradient);
+  Vec9 step;
+  if (!solve_newton(hessian, gradient, step)) return false;
   const double slope = gradient.dot(step);
   if (!step.allFinite() || !(slope < 0.0)) return false;
-  const double before = merit(s, planes, weight);
+  const double before = here.at(weight);
   for (double length = 1.0; length > 1e-4; length *= 0.5) {
     const Shape next{s.x + length * step};
-    if (merit(next, planes, weight) <= before + 0.1 * length * slope) {
+    const Merit there = merit(next, planes);
+    if (there.at(weight) <= before + 0.1 * length * slope) {
       s = next;
+      here = there;
       return true;
     }
   }
@@ -118,9 +167,10 @@ bool grow_inscribed_ellipsoid(std::span<const Plane> planes, const Ellipsoid& in
                               Ellipsoid& grown) {
   Shape s;
   if (!start_inside(planes, inside, s)) return false;
+  Merit here = merit(s, planes);
   double weight = kFirstWeight;
   for (int k = 0; k < kSteps; ++k) {
-    if (!newton_step(s, planes, weight) && weight <= kLastWeight) break;
+    if (!newton_step(s, here, planes, weight) && weight <= kLastWeight) break;
     weight = std::max(kLastWeight, 0.4 * weight);
   }
   Mat3 lower;

@@ -16,17 +16,28 @@ BitGrid::Word masked(const BitGrid::Word* row, int w, int x0, int x1) {
   return word;
 }
 
-}  // namespace
-
-void BoxSet::clear() {
-  resize(0);
+// Voxels x0 to x1 of a row as one word, the first in its lowest bit. @pre x1 - x0 <= 64
+BitGrid::Word gathered(const BitGrid::Word* row, int x0, int x1) {
+  const int w = x0 / kBits;
+  const int shift = x0 % kBits;
+  BitGrid::Word word = row[w] >> shift;
+  if (shift != 0 && (w + 1) * kBits < x1) word |= row[w + 1] << (kBits - shift);
+  const int count = x1 - x0;
+  return count < kBits ? word & ~(~BitGrid::Word{0} << count) : word;
 }
 
-void BoxSet::add(const Vec3& lower, const Vec3& upper) {
+bool is_narrow(const VoxelBox& region) {
+  return region.hi.x - region.lo.x <= kBits;
+}
+
+}  // namespace
+
+void BoxSet::add(const Vec3& lower, const Vec3& upper, double r) {
   for (int a = 0; a < 3; ++a) {
     lo[a].push_back(lower[a]);
     hi[a].push_back(upper[a]);
   }
+  radius.push_back(r);
 }
 
 void BoxSet::set(std::size_t i, const Vec3& lower, const Vec3& upper) {
@@ -41,6 +52,7 @@ void BoxSet::copy(std::size_t from, std::size_t to) {
     lo[a][to] = lo[a][from];
     hi[a][to] = hi[a][from];
   }
+  radius[to] = radius[from];
 }
 
 void BoxSet::resize(std::size_t n) {
@@ -48,25 +60,35 @@ void BoxSet::resize(std::size_t n) {
     lo[a].resize(n);
     hi[a].resize(n);
   }
+  radius.resize(n);
 }
 
-void ObstacleMerger::collect(const BitGrid& occupied, const VoxelBox& region, BoxSet& boxes) {
-  boxes.clear();
+void ObstacleMerger::collect(const BitGrid& occupied, const VoxelBox& region, Index3 base,
+                             double radius, BoxSet& boxes) {
+  base_ = Vec3(base.x, base.y, base.z);
+  radius_ = radius;
   open_.clear();
   for (int z = region.lo.z; z < region.hi.z; ++z) {
     if (z > region.lo.z && layer_repeats(occupied, region, z)) continue;
     collect_layer(occupied, region, z);
-    join_layers(region, z, boxes);
+    join_layers(z, boxes);
   }
-  for (const Rectangle& r : open_) emit(r, region, region.hi.z, boxes);
+  for (const Rectangle& r : open_) emit(r, region.hi.z, boxes);
 }
 
 bool ObstacleMerger::layer_repeats(const BitGrid& occupied, const VoxelBox& region, int z) const {
   const int first = region.lo.x / kBits;
   const int last = (region.hi.x - 1) / kBits;
+  const bool narrow = is_narrow(region);
   for (int y = region.lo.y; y < region.hi.y; ++y) {
     const BitGrid::Word* above = occupied.row(y, z);
     const BitGrid::Word* below = occupied.row(y, z - 1);
+    if (narrow) {
+      if (gathered(above, region.lo.x, region.hi.x) != gathered(below, region.lo.x, region.hi.x)) {
+        return false;
+      }
+      continue;
+    }
     for (int w = first; w <= last; ++w) {
       if (masked(above, w, region.lo.x, region.hi.x) !=
           masked(below, w, region.lo.x, region.hi.x)) {
@@ -80,10 +102,35 @@ bool ObstacleMerger::layer_repeats(const BitGrid& occupied, const VoxelBox& regi
 void ObstacleMerger::collect_layer(const BitGrid& occupied, const VoxelBox& region, int z) {
   layer_.clear();
   previous_row_.clear();
+  const bool narrow = is_narrow(region);
+  BitGrid::Word previous = 0;
   for (int y = region.lo.y; y < region.hi.y; ++y) {
+    if (!narrow) {
+      row_.clear();
+      collect_row(occupied.row(y, z), region, y, z);
+      std::swap(row_, previous_row_);
+      continue;
+    }
+    const BitGrid::Word word = gathered(occupied.row(y, z), region.lo.x, region.hi.x);
+    if (word == previous) {
+      for (const Run& run : previous_row_) layer_[run.rectangle].y1 = y + 1;
+      continue;
+    }
     row_.clear();
-    collect_row(occupied.row(y, z), region, y, z);
+    collect_narrow_row(word, region.lo.x, y, z);
     std::swap(row_, previous_row_);
+    previous = word;
+  }
+}
+
+void ObstacleMerger::collect_narrow_row(BitGrid::Word word, int x0, int y, int z) {
+  std::size_t before = 0;
+  while (word != 0) {
+    const int start = std::countr_zero(word);
+    const int length = std::countr_one(word >> start);
+    add_run(x0 + start, x0 + start + length, y, z, before);
+    if (start + length >= kBits) break;
+    word &= ~BitGrid::Word{0} << (start + length);
   }
 }
 
@@ -126,29 +173,28 @@ void ObstacleMerger::add_run(int x0, int x1, int y, int z, std::size_t& before) 
 }
 
 // Both lists are in order of (y0, x0), and no two of a list share it.
-void ObstacleMerger::join_layers(const VoxelBox& region, int z, BoxSet& boxes) {
+void ObstacleMerger::join_layers(int z, BoxSet& boxes) {
   auto before = [](const Rectangle& a, const Rectangle& b) {
     return a.y0 != b.y0 ? a.y0 < b.y0 : a.x0 < b.x0;
   };
   std::size_t k = 0;
   for (Rectangle& r : layer_) {
-    while (k < open_.size() && before(open_[k], r)) emit(open_[k++], region, z, boxes);
+    while (k < open_.size() && before(open_[k], r)) emit(open_[k++], z, boxes);
     if (k < open_.size() && !before(r, open_[k])) {
       if (open_[k].x1 == r.x1 && open_[k].y1 == r.y1) {
         r.z0 = open_[k].z0;
       } else {
-        emit(open_[k], region, z, boxes);
+        emit(open_[k], z, boxes);
       }
       ++k;
     }
   }
-  for (; k < open_.size(); ++k) emit(open_[k], region, z, boxes);
+  for (; k < open_.size(); ++k) emit(open_[k], z, boxes);
   std::swap(open_, layer_);
 }
 
-void ObstacleMerger::emit(const Rectangle& r, const VoxelBox& region, int z1, BoxSet& boxes) {
-  const Vec3 base(region.lo.x, region.lo.y, region.lo.z);
-  boxes.add(Vec3(r.x0, r.y0, r.z0) - base, Vec3(r.x1, r.y1, z1) - base);
+void ObstacleMerger::emit(const Rectangle& r, int z1, BoxSet& boxes) const {
+  boxes.add(Vec3(r.x0, r.y0, r.z0) - base_, Vec3(r.x1, r.y1, z1) - base_, radius_);
 }
 
 }  // namespace goshawk::corridor_builder

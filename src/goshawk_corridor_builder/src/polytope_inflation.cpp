@@ -25,31 +25,49 @@ bool trim_by(const Vec3& n, double behind, Vec3& lower, Vec3& upper) {
 
 }  // namespace
 
-std::optional<PolytopeInflation::Blocked> PolytopeInflation::inflate(
-    const Ellipsoid& ellipsoid, const BoxSet& boxes, const Vec3& extent, const Segment& segment,
-    double wanted_slack, const Margins& margins) {
+PolytopeInflation::Result PolytopeInflation::inflate(const Ellipsoid& ellipsoid,
+                                                     const BoxSet& boxes, const Vec3& extent,
+                                                     const Segment& segment, bool stop_when_thin,
+                                                     const Margins& margins) {
   planes_.clear();
   add_local_box(extent, segment, margins);
   active_ = boxes;
   measure(ellipsoid);
+  Result result;
   while (active_.size() > 0) {
-    const auto nearest = std::min_element(squared_.begin(), squared_.end());
-    const std::size_t i = std::size_t(nearest - squared_.begin());
-    if (trim(i, ellipsoid, margins)) continue;
-    const Vec3 lower = active_.lower(i);
-    const Vec3 upper = active_.upper(i);
-    const Vec3 offset = nearest_in_box(ellipsoid, lower, upper).offset;
+    const std::size_t i = nearest(ellipsoid, margins);
+    if (i >= active_.size()) break;
+    const Obstacle obstacle = active_.at(i);
+    const Vec3 offset = nearest_in_box(ellipsoid, obstacle.lower, obstacle.upper).offset;
     Vec3 normal = ellipsoid.metric * offset;
     if (!(normal.norm() > 1e-12)) normal = Vec3::UnitX();
     Plane plane;
-    if (!separate(normal, lower, upper, segment, wanted_slack, margins, plane)) {
-      return Blocked{lower, upper};
+    const Separation separation = separate(normal, obstacle, segment, margins, plane);
+    if (separation != Separation::roomy && result.separation != Separation::thin) {
+      result = {separation, obstacle};
     }
+    if (separation == Separation::blocked) return {separation, obstacle};
+    if (separation == Separation::thin && stop_when_thin) return result;
     planes_.push_back(plane);
     remove(i);
     drop_behind(plane, margins);
   }
-  return std::nullopt;
+  return result;
+}
+
+// The active box that an expanding ellipsoid touches first, trimmed by all planes. Distances are
+// computed only of boxes whose lower bound comes up: most are dropped before. @return size() where
+// no box is left
+std::size_t PolytopeInflation::nearest(const Ellipsoid& ellipsoid, const Margins& margins) {
+  while (active_.size() > 0) {
+    const std::size_t i =
+        std::size_t(std::min_element(squared_.begin(), squared_.end()) - squared_.begin());
+    if (trim(i, margins)) continue;
+    if (exact_[i]) return i;
+    squared_[i] = nearest_in_box(ellipsoid, active_.lower(i), active_.upper(i)).squared;
+    exact_[i] = 1;
+  }
+  return active_.size();
 }
 
 void PolytopeInflation::add_local_box(const Vec3& extent, const Segment& segment,
@@ -68,28 +86,31 @@ void PolytopeInflation::add_local_box(const Vec3& extent, const Segment& segment
 }
 
 void PolytopeInflation::measure(const Ellipsoid& ellipsoid) {
-  squared_.resize(active_.size());
-  seen_.assign(active_.size(), 6);  // boxes lie within the local box
-  for (std::size_t i = 0; i < active_.size(); ++i) {
-    squared_[i] = nearest_in_box(ellipsoid, active_.lower(i), active_.upper(i)).squared;
+  const std::size_t n = active_.size();
+  squared_.resize(n);
+  exact_.assign(n, 0);
+  seen_.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    seen_[i] = active_.radius[i] > 0.0 ? 0 : 6;  // boxes without a sphere are in the local box
+    squared_[i] = squared_at_least(ellipsoid, active_.lower(i), active_.upper(i));
   }
 }
 
 // @return true where box i is not what it was: smaller, or gone
-bool PolytopeInflation::trim(std::size_t i, const Ellipsoid& ellipsoid, const Margins& margins) {
+bool PolytopeInflation::trim(std::size_t i, const Margins& margins) {
   if (seen_[i] == planes_.size()) return false;
   Vec3 lower = active_.lower(i);
   Vec3 upper = active_.upper(i);
   for (; seen_[i] < planes_.size(); ++seen_[i]) {
     const Plane& plane = planes_[seen_[i]];
-    if (!trim_by(plane.normal, margins.behind(plane), lower, upper)) {
+    if (!trim_by(plane.normal, margins.behind(plane) + active_.radius[i], lower, upper)) {
       remove(i);
       return true;
     }
   }
   if (lower == active_.lower(i) && upper == active_.upper(i)) return false;
   active_.set(i, lower, upper);
-  squared_[i] = nearest_in_box(ellipsoid, lower, upper).squared;
+  exact_[i] = 0;  // the distance of the larger box is a lower bound
   return true;
 }
 
@@ -99,10 +120,11 @@ void PolytopeInflation::drop_behind(const Plane& plane, const Margins& margins) 
   const double* x = (v[0] > 0 ? active_.lo : active_.hi)[0].data();
   const double* y = (v[1] > 0 ? active_.lo : active_.hi)[1].data();
   const double* z = (v[2] > 0 ? active_.lo : active_.hi)[2].data();
+  const double* r = active_.radius.data();
   const double behind = margins.behind(plane);
   keep_.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
-    keep_[i] = v[0] * x[i] + v[1] * y[i] + v[2] * z[i] < behind;
+    keep_[i] = v[0] * x[i] + v[1] * y[i] + v[2] * z[i] - r[i] < behind;
   }
   std::size_t kept = 0;
   for (std::size_t i = 0; i < n; ++i) {
@@ -110,12 +132,14 @@ void PolytopeInflation::drop_behind(const Plane& plane, const Margins& margins) 
     if (kept != i) {
       active_.copy(i, kept);
       squared_[kept] = squared_[i];
+      exact_[kept] = exact_[i];
       seen_[kept] = seen_[i];
     }
     ++kept;
   }
   active_.resize(kept);
   squared_.resize(kept);
+  exact_.resize(kept);
   seen_.resize(kept);
 }
 
@@ -123,9 +147,11 @@ void PolytopeInflation::remove(std::size_t i) {
   const std::size_t last = active_.size() - 1;
   active_.copy(last, i);
   squared_[i] = squared_[last];
+  exact_[i] = exact_[last];
   seen_[i] = seen_[last];
   active_.resize(last);
   squared_.resize(last);
+  exact_.resize(last);
   seen_.resize(last);
 }
 

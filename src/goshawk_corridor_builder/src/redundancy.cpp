@@ -21,6 +21,17 @@ bool implied_by(const Plane& plane, const Plane& a, const Plane& b, const Plane&
   return bound <= plane.offset + tolerance;
 }
 
+// Two vertices are joined by an edge where they share two planes.
+template <typename Mask>
+bool has_two(const Mask& mask) {
+  unsigned bits = 0;
+  for (const std::uint64_t word : mask) {
+    if (word == 0) continue;
+    bits += (word & (word - 1)) != 0 ? 2 : 1;
+  }
+  return bits >= 2;
+}
+
 }  // namespace
 
 void RedundancyFilter::filter(std::span<const Plane> planes, const Vec3& extent,
@@ -30,8 +41,8 @@ void RedundancyFilter::filter(std::span<const Plane> planes, const Vec3& extent,
   for (std::size_t k = 6; k < count; ++k) clip(planes[k], k);
   face_.assign(planes.size(), 1);
   for (std::size_t k = 0; k < count; ++k) {
-    const auto touching =
-        std::count_if(vertices_.begin(), vertices_.end(), [&](const Vertex& v) { return v.on[k]; });
+    const auto touching = std::count_if(vertices_.begin(), vertices_.end(),
+                                        [&](const Vertex& v) { return v.lies_on(k); });
     face_[k] = planes[k].tight || touching >= 3;
   }
   const double far = 2.0 * extent.norm() + 1.0;
@@ -52,7 +63,7 @@ void RedundancyFilter::start(std::span<const Plane> planes) {
       const unsigned side = (corner >> axis) & 1U;
       const std::size_t k = 2 * axis + side;
       v.x[axis] = side ? planes[k].offset : -planes[k].offset;
-      v.on.set(k);
+      v.put_on(k);
     }
     vertices_.push_back(v);
   }
@@ -63,7 +74,7 @@ void RedundancyFilter::clip(const Plane& plane, std::size_t index) {
   bool cuts = false;
   for (Vertex& v : vertices_) {
     v.height = -plane.slack(v.x);
-    if (std::abs(v.height) <= kOnPlane) v.on.set(index);
+    if (std::abs(v.height) <= kOnPlane) v.put_on(index);
     cuts |= v.height > kOnPlane;
     if (v.height <= kOnPlane) next_.push_back(v);
   }
@@ -72,13 +83,13 @@ void RedundancyFilter::clip(const Plane& plane, std::size_t index) {
     if (in.height >= -kOnPlane) continue;
     for (const Vertex& out : vertices_) {
       if (out.height <= kOnPlane) continue;
-      const Mask edge = in.on & out.on;
-      if (edge.count() < 2) continue;
+      const Mask edge{in.on[0] & out.on[0], in.on[1] & out.on[1]};
+      if (!has_two(edge)) continue;
       Vertex v;
       const double t = in.height / (in.height - out.height);
       v.x = in.x + t * (out.x - in.x);
       v.on = edge;
-      v.on.set(index);
+      v.put_on(index);
       next_.push_back(v);
     }
   }
@@ -96,7 +107,7 @@ bool RedundancyFilter::follows_from_kept(std::span<const Plane> planes, std::siz
   std::size_t at[6];
   std::size_t n = 0;
   for (std::size_t i = 0; i < face_.size() && i < kMostPlanes && n < 6; ++i) {
-    if (farthest->on[i] && face_[i] && i != k) at[n++] = i;
+    if (farthest->lies_on(i) && face_[i] && i != k) at[n++] = i;
   }
   for (std::size_t a = 0; a < n; ++a) {
     for (std::size_t b = a + 1; b < n; ++b) {

@@ -1,6 +1,7 @@
 #pragma once
 
-#include <bitset>
+#include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -17,7 +18,7 @@ namespace goshawk::corridor_builder {
 /// stays, as every tight plane does: the answer may have a face too many, never one too few.
 class RedundancyFilter {
  public:
-  static constexpr int kMostPlanes = 256;  // further planes all stay
+  static constexpr int kMostPlanes = 128;  // further planes all stay
 
   /// @param planes the first six are the local box, in the order of PolytopeInflation
   /// @param extent the local box is [0, extent] @param kept planes of the answer, in order
@@ -25,11 +26,14 @@ class RedundancyFilter {
               std::vector<Plane>& kept);
 
  private:
-  using Mask = std::bitset<kMostPlanes>;
+  using Mask = std::array<std::uint64_t, kMostPlanes / 64>;
   struct Vertex {
-    Vec3 x;
-    Mask on;  // planes that it lies on
+    Vec3 x = Vec3::Zero();
+    Mask on = {};  // a bit for each plane that it lies on
     double height = 0.0;
+
+    bool lies_on(std::size_t k) const { return (on[k / 64] >> (k % 64)) & 1U; }
+    void put_on(std::size_t k) { on[k / 64] |= std::uint64_t{1} << (k % 64); }
   };
 
   void start(std::span<const Plane> planes);

@@ -1,5 +1,6 @@
 #include "segment_polytope.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -8,13 +9,19 @@
 namespace goshawk::corridor_builder {
 namespace {
 
-constexpr double kWantedSlack = 0.5;  // [voxel edges] planes keep this from both ends, if they can
 constexpr int kHalvings = 3;          // of the local box, for max_faces
+constexpr double kWorthwhile = 1.05;  // a further pass must begin with an ellipsoid so much larger
 
-VoxelBox local_box(const BitGrid& grid, const Vec3& p, const Vec3& q, double reach) {
-  const Vec3 lower = p.cwiseMin(q);
-  const Vec3 upper = p.cwiseMax(q);
-  const Index3 size = grid.size();
+// Up to a factor.
+double volume_of(const Ellipsoid& ellipsoid) {
+  return 1.0 / std::sqrt(ellipsoid.metric.determinant());
+}
+
+// At least half a voxel: the balls around the ends of the segment lie inside.
+VoxelBox local_box(const Index3& size, const Segment& segment, double wanted_reach) {
+  const double reach = std::max(0.5, wanted_reach);
+  const Vec3 lower = segment.p.cwiseMin(segment.q);
+  const Vec3 upper = segment.p.cwiseMax(segment.q);
   auto first = [&](int a, int n) {
     return int(std::clamp(std::floor(lower[a] - reach), 0.0, double(n - 1)));
   };
@@ -27,66 +34,99 @@ VoxelBox local_box(const BitGrid& grid, const Vec3& p, const Vec3& q, double rea
   return box;
 }
 
+VoxelBox widened(const VoxelBox& box, int by, const Index3& size) {
+  return {{std::max(0, box.lo.x - by), std::max(0, box.lo.y - by), std::max(0, box.lo.z - by)},
+          {std::min(size.x, box.hi.x + by), std::min(size.y, box.hi.y + by),
+           std::min(size.z, box.hi.z + by)}};
+}
+
 }  // namespace
 
-std::optional<Vec3> SegmentPolytope::build(const VoxelGrid& grid, const Vec3& p, const Vec3& q,
-                                           const Margins& margins, Polytope& polytope) {
-  double reach = config_.local_box_m / grid.geometry.resolution_m;
+Separation SegmentPolytope::build(const ObstacleLayers& map, const Segment& segment,
+                                  bool stop_when_thin, const Margins& margins, Faces& polytope) {
+  double reach = config_.local_box_m / map.geometry.resolution_m;
   fewest_.clear();
+  Separation result = Separation::roomy;
   for (int k = 0; k <= kHalvings; ++k, reach *= 0.5) {
-    if (auto blocked = build_within(grid, p, q, reach, margins)) return blocked;
+    result = build_within(map, segment, reach, stop_when_thin, margins);
+    if (result == Separation::blocked) return result;
+    if (result == Separation::thin && stop_when_thin) return result;
     if (fewest_.empty() || faces_.size() < fewest_.size()) {
       std::swap(fewest_, faces_);
       fewest_base_ = base_;
     }
     if (int(fewest_.size()) <= config_.max_faces) break;
   }
-  to_map(fewest_, fewest_base_, grid.geometry, polytope);
-  return std::nullopt;
+  to_map(fewest_, fewest_base_, map.geometry, polytope);
+  return result;
 }
 
-std::optional<Vec3> SegmentPolytope::build_within(const VoxelGrid& grid, const Vec3& p,
-                                                  const Vec3& q, double reach_voxels,
-                                                  const Margins& margins) {
-  const VoxelBox local = local_box(grid.occupied, p, q, reach_voxels);
+Separation SegmentPolytope::build_within(const ObstacleLayers& map, const Segment& segment,
+                                         double reach_voxels, bool stop_when_thin,
+                                         const Margins& margins) {
+  const VoxelBox local = local_box(map.geometry.size, segment, reach_voxels);
   const Index3 size = local.hi - local.lo;
   const Vec3 extent(size.x, size.y, size.z);
   base_ = Vec3(local.lo.x, local.lo.y, local.lo.z);
-  const Segment segment{p - base_, q - base_};
-  merger_.collect(grid.occupied, local, boxes_);
+  Segment here = segment;
+  here.p -= base_;
+  here.q -= base_;
+  collect(map, local);
+  if (stop_when_thin && find_thin(here)) return Separation::thin;
 
-  const Ellipsoid first = shrink_around_segment(segment.p, segment.q, boxes_);
-  if (auto blocked = inflation_.inflate(first, boxes_, extent, segment, kWantedSlack, margins)) {
-    const double t = nearest_parameter(segment, blocked->lower, blocked->upper);
-    return Vec3(p + t * (q - p));
-  }
-  grow(first, extent, segment, kWantedSlack, margins);
+  const Ellipsoid first = shrink_around_segment(here.p, here.q, boxes_);
+  const auto [separation, at] =
+      inflation_.inflate(first, boxes_, extent, here, stop_when_thin, margins);
+  in_the_way_ = at;
+  if (separation == Separation::blocked) return separation;
+  if (separation == Separation::thin && stop_when_thin) return separation;
+  grow(first, extent, here, margins);
   redundancy_.filter(inflation_.planes(), extent, margins, faces_);
-  return std::nullopt;
+  return separation;
+}
+
+// Looks for an obstacle that the segment passes, but not with its balls.
+bool SegmentPolytope::find_thin(const Segment& segment) {
+  for (std::size_t i = 0; i < boxes_.size(); ++i) {
+    const Obstacle obstacle = boxes_.at(i);
+    if (!meets(obstacle, segment, segment.needed)) continue;
+    if (!(clearance(obstacle, segment, {}) > 0.0)) return false;  // perhaps it is blocked
+    in_the_way_ = obstacle;
+    return true;
+  }
+  return false;
+}
+
+// Obstacles beyond the local box may reach into it by their sphere.
+void SegmentPolytope::collect(const ObstacleLayers& map, const VoxelBox& local) {
+  boxes_.clear();
+  for (const auto& [occupied, radius] : map.layers) {
+    if (occupied == nullptr) continue;
+    const int beyond = int(std::min(1e6, std::ceil(radius)));
+    merger_.collect(*occupied, widened(local, beyond, map.geometry.size), local.lo, radius, boxes_);
+  }
 }
 
 void SegmentPolytope::grow(const Ellipsoid& first, const Vec3& extent, const Segment& segment,
-                           double slack, const Margins& margins) {
+                           const Margins& margins) {
   Ellipsoid ellipsoid = first;
   for (int pass = 0; pass < config_.growth_passes; ++pass) {
     Ellipsoid grown;
     if (!grow_inscribed_ellipsoid(inflation_.planes(), ellipsoid, grown)) return;
-    if (regrown_.inflate(grown, boxes_, extent, segment, slack, margins)) return;
-    std::swap(inflation_, regrown_);
+    if (pass > 0 && volume_of(grown) < kWorthwhile * volume_of(ellipsoid)) return;
+    const auto result = regrown_.inflate(grown, boxes_, extent, segment, false, margins);
+    if (result.separation == Separation::blocked) return;
+    inflation_.swap_planes(regrown_);
     ellipsoid = grown;
   }
 }
 
 void to_map(const std::vector<Plane>& planes, const Vec3& base, const GridGeometry& geometry,
-            Polytope& polytope) {
-  const auto n = Eigen::Index(planes.size());
-  polytope.A.resize(n, 3);
-  polytope.b.resize(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const Plane& plane = planes[std::size_t(i)];
-    polytope.A.row(i) = plane.normal;
-    polytope.b[i] = geometry.resolution_m * (plane.offset + plane.normal.dot(base)) +
-                    plane.normal.dot(geometry.origin_map);
+            Faces& polytope) {
+  polytope.clear();
+  for (const Plane& plane : planes) {
+    polytope.add(plane.normal, geometry.resolution_m * (plane.offset + plane.normal.dot(base)) +
+                                   plane.normal.dot(geometry.origin_map));
   }
 }
 

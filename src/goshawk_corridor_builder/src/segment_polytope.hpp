@@ -1,10 +1,10 @@
 #pragma once
 
-#include <optional>
+#include <array>
 #include <vector>
 
+#include "faces.hpp"
 #include "goshawk/core/grid_geometry.hpp"
-#include "goshawk/core/polytope.hpp"
 #include "goshawk/corridor_builder/config.hpp"
 #include "obstacle_boxes.hpp"
 #include "polytope_inflation.hpp"
@@ -12,21 +12,46 @@
 
 namespace goshawk::corridor_builder {
 
+/// What polytopes keep out of: the set voxels of one or two bit grids of the same size, each with a
+/// sphere swept over its voxels.
+struct ObstacleLayers {
+  struct Layer {
+    const BitGrid* occupied = nullptr;
+    double radius = 0.0;  // [voxel edges]
+  };
+  std::array<Layer, 2> layers;  // a null one is not there
+  GridGeometry geometry;
+};
+
 /// The polytope of one segment, by ellipsoid inflation.
 class SegmentPolytope {
  public:
-  explicit SegmentPolytope(const Config& config) : config_(config) {}
+  explicit SegmentPolytope(const Config& config) : config_(config) {
+    // They change places with each other: so that neither has to grow late.
+    faces_.reserve(RedundancyFilter::kMostPlanes);
+    fewest_.reserve(RedundancyFilter::kMostPlanes);
+    inflation_.reserve(RedundancyFilter::kMostPlanes);
+    regrown_.reserve(RedundancyFilter::kMostPlanes);
+  }
 
-  /// @param p, q [voxel edges, GridGeometry::to_grid] inside the grid
-  /// @param polytope frame map, overwritten
-  /// @return nothing, or where the segment enters an obstacle: a point [voxel edges] and its voxel
-  std::optional<Vec3> build(const VoxelGrid& grid, const Vec3& p, const Vec3& q,
-                            const Margins& margins, Polytope& polytope);
+  /// @param segment [voxel edges, GridGeometry::to_grid] inside the grid
+  /// @param stop_when_thin ends without a polytope where the balls around its ends do not fit
+  /// @param polytope frame map, overwritten unless blocked, or thin and that was to stop it
+  Separation build(const ObstacleLayers& map, const Segment& segment, bool stop_when_thin,
+                   const Margins& margins, Faces& polytope);
+
+  /// Of the last build: the obstacles around the segment, and where the segment was thin or
+  /// blocked, relative to base() [voxel edges]
+  const BoxSet& obstacles() const { return boxes_; }
+  const Vec3& base() const { return base_; }
+  const Obstacle& in_the_way() const { return in_the_way_; }
 
  private:
-  std::optional<Vec3> build_within(const VoxelGrid& grid, const Vec3& p, const Vec3& q,
-                                   double reach_voxels, const Margins& margins);
-  void grow(const Ellipsoid& first, const Vec3& extent, const Segment& segment, double slack,
+  Separation build_within(const ObstacleLayers& map, const Segment& segment, double reach_voxels,
+                          bool stop_when_thin, const Margins& margins);
+  bool find_thin(const Segment& segment);
+  void collect(const ObstacleLayers& map, const VoxelBox& local);
+  void grow(const Ellipsoid& first, const Vec3& extent, const Segment& segment,
             const Margins& margins);
 
   Config config_;
@@ -36,6 +61,7 @@ class SegmentPolytope {
   PolytopeInflation regrown_;
   RedundancyFilter redundancy_;
   Vec3 base_ = Vec3::Zero();  // of the local box [voxel edges]
+  Obstacle in_the_way_;
   std::vector<Plane> faces_;
   std::vector<Plane> fewest_;
   Vec3 fewest_base_ = Vec3::Zero();
@@ -43,6 +69,6 @@ class SegmentPolytope {
 
 /// Planes in voxel edges relative to `base`, as a polytope in frame map.
 void to_map(const std::vector<Plane>& planes, const Vec3& base, const GridGeometry& geometry,
-            Polytope& polytope);
+            Faces& polytope);
 
 }  // namespace goshawk::corridor_builder

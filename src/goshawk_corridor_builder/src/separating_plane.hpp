@@ -26,9 +26,26 @@ struct Margins {
   static Margins for_coordinates(double largest_coordinate);
 };
 
+/// Radii of balls around both ends of a segment [voxel edges].
+struct Room {
+  double p = 0.0;
+  double q = 0.0;
+};
+
+/// What a plane must leave in front: the hull of two balls around the ends of a segment (a capsule
+/// that may taper), if obstacles allow it; else the segment alone.
 struct Segment {
-  Vec3 p;
-  Vec3 q;
+  Vec3 p = Vec3::Zero();
+  Vec3 q = Vec3::Zero();
+  Room wanted = {};
+  Room needed = {};  // at most `wanted`: tried where `wanted` does not fit
+};
+
+/// An axis-aligned box that is kept away from by `radius` (a sphere swept over it).
+struct Obstacle {
+  Vec3 lower = Vec3::Zero();
+  Vec3 upper = Vec3::Zero();
+  double radius = 0.0;
 };
 
 /// The least n . x over a box.
@@ -36,17 +53,31 @@ inline double support(const Vec3& n, const Vec3& lower, const Vec3& upper) {
   return n[0] * (n[0] > 0 ? lower[0] : upper[0]) + n[1] * (n[1] > 0 ? lower[1] : upper[1]) +
          n[2] * (n[2] > 0 ? lower[2] : upper[2]);
 }
+/// The least n . x over an obstacle, its sphere included. @pre n of unit length
+inline double support(const Vec3& n, const Obstacle& o) {
+  return support(n, o.lower, o.upper) - o.radius;
+}
 
-/// A plane with the whole box beyond it and the whole segment before it.
+enum class Separation {
+  roomy,    // with the balls that were needed in front, or those that were wanted
+  thin,     // with the segment in front, but not the balls
+  blocked,  // not at all: the segment enters the obstacle
+};
+
+/// A plane with the whole obstacle beyond it and the segment, with its balls where that is
+/// possible, before it.
 ///
-/// The normal starts as `wanted` (where the ellipsoid touches the box) and turns towards the
-/// direction of least distance between segment and box, only as far as needed for both ends to
-/// keep `wanted_slack` (less where the box itself is nearer than that).
-/// @return false where segment and box cannot be separated: the segment enters the box
-bool separate(const Vec3& wanted, const Vec3& lower, const Vec3& upper, const Segment& segment,
-              double wanted_slack, const Margins& margins, Plane& plane);
+/// The normal starts as `towards` (where the ellipsoid touches the box) and turns towards the
+/// direction in which segment and obstacle are farthest apart, only as far as needed.
+Separation separate(const Vec3& towards, const Obstacle& obstacle, const Segment& segment,
+                    const Margins& margins, Plane& plane);
 
-/// Where between p (0) and q (1) the segment is nearest to a box; the middle of what is inside.
-double nearest_parameter(const Segment& segment, const Vec3& lower, const Vec3& upper);
+/// How far obstacle and hull of the balls are apart; below zero where they meet.
+double clearance(const Obstacle& obstacle, const Segment& segment, const Room& room);
+bool meets(const Obstacle& obstacle, const Segment& segment, const Room& room);
+
+/// Where between p (0) and q (1) an obstacle is nearest, radii of `room` allowed for; the middle
+/// of what is inside.
+double nearest_parameter(const Obstacle& obstacle, const Segment& segment, const Room& room = {});
 
 }  // namespace goshawk::corridor_builder

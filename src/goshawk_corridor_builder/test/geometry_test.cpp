@@ -4,6 +4,7 @@
 
 #include <Eigen/LU>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "../src/ellipsoid.hpp"
@@ -49,7 +50,8 @@ TEST(ObstacleMerger, CoversEveryBlockedVoxelOnceAndNoFreeOne) {
     VoxelBox region{{random.below(size.x), random.below(size.y), random.below(size.z)}, size};
     region.hi.x = region.lo.x + 1 + random.below(size.x - region.lo.x);
     region.hi.y = region.lo.y + 1 + random.below(size.y - region.lo.y);
-    merger.collect(grid, region, boxes);
+    boxes.clear();
+    merger.collect(grid, region, region.lo, 0.0, boxes);
     BitGrid covered(size, true);
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       for (int z = int(boxes.lo[2][i]); z < int(boxes.hi[2][i]); ++z) {
@@ -109,7 +111,8 @@ TEST(Ellipsoid, AroundASegmentEntersNoBoxAndHoldsTheSegment) {
     for (int i = 0; i < 12; ++i) {
       const RandomBox box(random);
       Plane plane;
-      if (separate(Vec3::UnitX(), box.lower, box.upper, {p, q}, 0.0, Margins{}, plane)) {
+      if (separate(Vec3::UnitX(), {box.lower, box.upper}, {p, q}, Margins{}, plane) !=
+          Separation::blocked) {
         boxes.add(box.lower, box.upper);
       }
     }
@@ -145,25 +148,70 @@ TEST(SeparatingPlane, KeepsBoxAndSegmentApartExactlyWhereThatIsPossible) {
   const Margins margins = Margins::for_coordinates(20.0);
   int apart = 0;
   for (int k = 0; k < 20000; ++k) {
-    const Segment s{random_point(random, -10, 10), random_point(random, -10, 10)};
+    const double wanted = random.uniform(0.0, 1.0);
+    const Segment s{random_point(random, -10, 10), random_point(random, -10, 10), {wanted, wanted}};
     const RandomBox box(random);
-    const double wanted_slack = random.uniform(0.0, 1.0);
+    const Obstacle obstacle{box.lower, box.upper};
     Plane plane;
-    const bool done = separate(random_point(random, -1, 1), box.lower, box.upper, s, wanted_slack,
-                               margins, plane);
-    ASSERT_EQ(done, !segment_enters(s, box));
-    if (!done) continue;
+    const Separation done = separate(random_point(random, -1, 1), obstacle, s, margins, plane);
+    ASSERT_EQ(done != Separation::blocked, !segment_enters(s, box));
+    if (done == Separation::blocked) continue;
     ++apart;
     EXPECT_NEAR(plane.normal.norm(), 1.0, 1e-12);
-    EXPECT_GT(support(plane.normal, box.lower, box.upper), plane.offset);
+    EXPECT_GT(support(plane.normal, obstacle), plane.offset);
     EXPECT_GE(plane.slack(s.p), 0.0);
     EXPECT_GE(plane.slack(s.q), 0.0);
-    const Vec3 x = s.p + nearest_parameter(s, box.lower, box.upper) * (s.q - s.p);
+    const Vec3 x = s.p + nearest_parameter(obstacle, s) * (s.q - s.p);
     const double distance = (x.cwiseMax(box.lower).cwiseMin(box.upper) - x).norm();
     const double kept = std::min(plane.slack(s.p), plane.slack(s.q));
-    EXPECT_GE(kept, std::min(wanted_slack, 0.9 * distance) - 1e-6);
+    EXPECT_GE(kept, (distance >= wanted ? wanted : 0.0) - 1e-6);
   }
   EXPECT_GT(apart, 5000);
+}
+
+// The distance between segment and box, by trying many points.
+double sampled_clearance(const Segment& s, const Obstacle& o, const Room& room) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i <= 2000; ++i) {
+    const double t = i / 2000.0;
+    const Vec3 x = s.p + t * (s.q - s.p);
+    const double distance = (x.cwiseMax(o.lower).cwiseMin(o.upper) - x).norm();
+    least = std::min(least, distance - o.radius - (1.0 - t) * room.p - t * room.q);
+  }
+  return least;
+}
+
+TEST(SeparatingPlane, LeavesTheBallsInFrontWhereTheirHullIsFree) {
+  Random random(14);
+  const Margins margins = Margins::for_coordinates(20.0);
+  int roomy = 0, thin = 0;
+  for (int k = 0; k < 4000; ++k) {
+    const Room room{random.uniform(0.0, 2.0), random.uniform(0.0, 2.0)};
+    const Segment s{random_point(random, -10, 10), random_point(random, -10, 10), room, room};
+    const RandomBox box(random);
+    const Obstacle obstacle{box.lower, box.upper,
+                            random.chance(0.5) ? random.uniform(0.0, 2.0) : 0};
+    const double truth = sampled_clearance(s, obstacle, room);
+    const double found = clearance(obstacle, s, room);
+    if (truth > 0.0) {
+      ASSERT_NEAR(found, truth, 2e-2);
+    } else {
+      ASSERT_LT(found, 2e-2);
+    }
+    Plane plane;
+    const Separation done = separate(random_point(random, -1, 1), obstacle, s, margins, plane);
+    if (std::abs(truth) > 2e-2) {
+      EXPECT_EQ(done == Separation::roomy, truth > 0.0);
+    }
+    roomy += done == Separation::roomy;
+    thin += done == Separation::thin;
+    if (done == Separation::blocked) continue;
+    EXPECT_GT(support(plane.normal, obstacle), plane.offset);
+    EXPECT_GE(plane.slack(s.p), done == Separation::roomy ? room.p - 1e-6 : 0.0);
+    EXPECT_GE(plane.slack(s.q), done == Separation::roomy ? room.q - 1e-6 : 0.0);
+  }
+  EXPECT_GT(roomy, 1000);
+  EXPECT_GT(thin, 100);
 }
 
 std::vector<Plane> random_polytope(Random& random, int planes, const Vec3& extent) {

@@ -221,6 +221,13 @@ Result<FlightCheck> FlightCheck::from_tree(std::unique_ptr<octomap::OcTree> tree
   return FlightCheck(std::make_unique<Implementation>(std::move(tree), body, options));
 }
 
+Result<FlightCheck> FlightCheck::from_payload(std::string_view payload, double resolution_m,
+                                              const Body& body, const Options& options) {
+  auto tree = read_payload(payload, resolution_m);
+  if (!tree) return tree.error();
+  return from_tree(std::move(*tree), body, options);
+}
+
 Result<Verdict> FlightCheck::judge(std::span<const Sample> track) const {
   if (auto status = check_track(track); !status) return status.error();
   return implementation_->judge(track);

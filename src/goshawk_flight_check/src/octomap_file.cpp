@@ -131,6 +131,24 @@ Result<std::unique_ptr<octomap::OcTree>> read_octomap(const std::filesystem::pat
   return tree;
 }
 
+Result<std::unique_ptr<octomap::OcTree>> read_payload(std::string_view payload,
+                                                      double resolution_m) {
+  if (!(resolution_m > 0.0) || !std::isfinite(resolution_m)) {
+    return fail(ErrorCode::map_malformed, "the OctoMap message's resolution is not above zero");
+  }
+  if (payload.empty()) {
+    return fail(ErrorCode::map_empty, "the OctoMap message holds no voxel");
+  }
+  if (ShapeCheck shape(payload); !shape.binary_node(0)) {
+    return fail(ErrorCode::map_malformed,
+                "the OctoMap message's tree breaks off or is too deep: is it binary?");
+  }
+  auto tree = std::make_unique<octomap::OcTree>(resolution_m);
+  std::istringstream nodes{std::string(payload)};
+  tree->readBinaryData(nodes);
+  return tree;
+}
+
 namespace {
 
 void occupy_gaps(octomap::OcTree& tree, octomap::OcTreeNode* node) {

@@ -27,20 +27,6 @@ Moved evaluate(const PlannedPiece& piece, double u) {
   return {p[0], 20.0 * second / (piece.duration_s * piece.duration_s)};
 }
 
-/// Free fall leaves the attitude open; then the vehicle is taken to be level.
-Eigen::Quaterniond attitude(const Vec3& acceleration_map, double yaw_rad) {
-  const Vec3 thrust = acceleration_map + Vec3(0.0, 0.0, kGravity);
-  const Vec3 up = thrust.norm() > 1e-6 ? Vec3(thrust.normalized()) : Vec3::UnitZ();
-  const Vec3 heading(std::cos(yaw_rad), std::sin(yaw_rad), 0.0);
-  Vec3 left = up.cross(heading);
-  // Flying on its side along the heading: any left will do that is square to up.
-  left = left.norm() > 1e-6 ? Vec3(left.normalized())
-                            : Vec3(-std::sin(yaw_rad), std::cos(yaw_rad), 0.0);
-  Eigen::Matrix3d R_map_base;
-  R_map_base << left.cross(up), left, up;
-  return Eigen::Quaterniond(R_map_base).normalized();
-}
-
 std::string piece_fault(const PlannedPiece& piece) {
   if (!(piece.duration_s > 0.0) || !std::isfinite(piece.duration_s)) {
     return "has a duration that is not above zero";
@@ -69,6 +55,20 @@ Status check(std::span<const PlannedPiece> pieces, double step_s, double yaw_rad
 
 }  // namespace
 
+/// Free fall leaves the attitude open; then the vehicle is taken to be level.
+Eigen::Quaterniond flat_attitude(const Vec3& acceleration_map, double yaw_rad) {
+  const Vec3 thrust = acceleration_map + Vec3(0.0, 0.0, kGravity);
+  const Vec3 up = thrust.norm() > 1e-6 ? Vec3(thrust.normalized()) : Vec3::UnitZ();
+  const Vec3 heading(std::cos(yaw_rad), std::sin(yaw_rad), 0.0);
+  Vec3 left = up.cross(heading);
+  // Flying on its side along the heading: any left will do that is square to up.
+  left = left.norm() > 1e-6 ? Vec3(left.normalized())
+                            : Vec3(-std::sin(yaw_rad), std::cos(yaw_rad), 0.0);
+  Eigen::Matrix3d R_map_base;
+  R_map_base << left.cross(up), left, up;
+  return Eigen::Quaterniond(R_map_base).normalized();
+}
+
 Result<std::vector<Sample>> planned_track(std::span<const PlannedPiece> pieces, double step_s,
                                           double yaw_rad) {
   if (auto status = check(pieces, step_s, yaw_rad); !status) return status.error();
@@ -80,7 +80,7 @@ Result<std::vector<Sample>> planned_track(std::span<const PlannedPiece> pieces, 
       const double u = double(k) / steps;
       const Moved moved = evaluate(piece, u);
       track.push_back({start_s + u * piece.duration_s, moved.position_map,
-                       attitude(moved.acceleration_map, yaw_rad)});
+                       flat_attitude(moved.acceleration_map, yaw_rad)});
     }
     start_s += piece.duration_s;
   }

@@ -147,7 +147,7 @@ TEST_F(BadInput, EveryParameterIsDescribedAndItsDefaultIsInRange) {
       EXPECT_TRUE(range.contains(value));
     }
   });
-  EXPECT_EQ(parameters, 7);
+  EXPECT_EQ(parameters, 8);
 }
 
 }  // namespace

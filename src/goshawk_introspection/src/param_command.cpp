@@ -22,6 +22,17 @@ void print(const std::vector<runtime::ParameterDescription>& parameters) {
   std::cout << std::flush;
 }
 
+int list_components(const CommonOptions& common) {
+  const auto names = runtime::installed_components();
+  if (common.json) {
+    std::cout << to_line({{"components", names}}) << std::endl;
+    return 0;
+  }
+  for (const auto& name : names) std::cout << name << "\n";
+  std::cout << std::flush;
+  return 0;
+}
+
 int describe_component(const CommonOptions& common, const std::string& name) {
   auto component = runtime::load_component(name);
   if (!component) return say_wrong_call(component.error().message);
@@ -47,6 +58,10 @@ int describe_component(const CommonOptions& common, const std::string& name) {
 
 int param_command(std::vector<std::string> arguments) {
   static const std::vector<Verb> kVerbs = {
+      {"list", "the installed components",
+       [](CLI::App&, CommonOptions& common) {
+         return [&common] { return list_components(common); };
+       }},
       {"describe", "the parameters of a component", [](CLI::App& app, CommonOptions& common) {
          auto name = std::make_shared<std::string>();
          app.add_option("component", *name, "its name, as goshawk run takes it")->required();

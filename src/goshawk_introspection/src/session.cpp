@@ -47,6 +47,25 @@ int say_nothing(const std::string& sentence) {
   return kNothing;
 }
 
+int run_one(const std::string& name, const Verb& verb, std::vector<std::string> arguments) {
+  CLI::App app(verb.summary, "goshawk " + name);
+  CommonOptions common;
+  app.add_flag("--json", common.json, "for programs: one JSON object a line");
+  app.add_option("--timeout", common.timeout_s, "longest wait for something to be there [s]")
+      ->check(CLI::Range(0.0, 86400.0))
+      ->capture_default_str();
+  const auto run = verb.prepare(app, common);
+  try {
+    app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+  } catch (const CLI::CallForHelp&) {
+    std::cout << app.help();
+    return 0;
+  } catch (const CLI::ParseError& e) {
+    return say_wrong_call(name + ": " + e.what() + "\n" + app.help());
+  }
+  return run();
+}
+
 int run_verb(const std::string& command, const std::vector<Verb>& verbs,
              std::vector<std::string> arguments) {
   if (arguments.empty()) return say_wrong_call(usage(command, verbs));
@@ -59,22 +78,7 @@ int run_verb(const std::string& command, const std::vector<Verb>& verbs,
   for (const auto& verb : verbs) {
     names.push_back(verb.name);
     if (verb.name != wanted) continue;
-    CLI::App app(verb.summary, "goshawk " + command + " " + verb.name);
-    CommonOptions common;
-    app.add_flag("--json", common.json, "for programs: one JSON object a line");
-    app.add_option("--timeout", common.timeout_s, "longest wait for something to be there [s]")
-        ->check(CLI::Range(0.0, 86400.0))
-        ->capture_default_str();
-    const auto run = verb.prepare(app, common);
-    try {
-      app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend() - 1));
-    } catch (const CLI::CallForHelp&) {
-      std::cout << app.help();
-      return 0;
-    } catch (const CLI::ParseError& e) {
-      return say_wrong_call(command + " " + wanted + ": " + e.what() + "\n" + app.help());
-    }
-    return run();
+    return run_one(command + " " + wanted, verb, {arguments.begin() + 1, arguments.end()});
   }
   const std::string near = runtime::nearest_name(wanted, names);
   return say_wrong_call("there is no 'goshawk " + command + " " + wanted + "'" +

@@ -32,6 +32,9 @@ struct Verb {
   std::function<std::function<int()>(CLI::App& app, CommonOptions& common)> prepare;
 };
 
+/// Parses and runs a command that is one verb. @param name behind "goshawk "
+int run_one(const std::string& name, const Verb& verb, std::vector<std::string> arguments);
+
 /// Finds the verb, parses, runs. A wrong call is a sentence and status 2; bugs throw.
 int run_verb(const std::string& command, const std::vector<Verb>& verbs,
              std::vector<std::string> arguments);

@@ -1,5 +1,6 @@
-// introspection_cli topic|node|param ...
+// introspection_cli topic|node|param|doctor ...
 
+#include "goshawk/introspection/doctor_command.hpp"
 #include "goshawk/introspection/node_command.hpp"
 #include "goshawk/introspection/param_command.hpp"
 #include "goshawk/introspection/topic_command.hpp"
@@ -12,5 +13,6 @@ int main(int argc, char** argv) {
   if (command == "topic") return topic_command(std::move(arguments));
   if (command == "node") return node_command(std::move(arguments));
   if (command == "param") return param_command(std::move(arguments));
+  if (command == "doctor") return doctor_command(std::move(arguments));
   return 3;
 }

@@ -66,6 +66,9 @@ class MapServerComponent : public Component {
     node.every(kWholeMapPeriod_s, [this] {
       if (changed_) publish_whole();
     });
+    if (config_.publish_raw) {
+      raw_voxels_ = node.advertise<msg::VoxelGrid>("map/voxels/raw", Qos::latched());
+    }
     publish_whole();
     const auto& grid = map_.grid();
     reporter_.ready("serves " + to_text(grid.geometry.size) + " voxels of " +
@@ -82,6 +85,7 @@ class MapServerComponent : public Component {
       conversions::fill_msg(map_.grid(), m);
       send(voxels_, m);
     }
+    if (raw_voxels_) publish_raw();
     const std::string bytes = binary_payload(map_.tree());
     octomap_msgs::msg::Octomap m;
     m.header(conversions::make_header(node_.now_ns()));
@@ -90,6 +94,16 @@ class MapServerComponent : public Component {
     m.resolution(map_.tree().getResolution());
     m.data().assign(bytes.begin(), bytes.end());
     send(octomap_, m);
+  }
+
+  void publish_raw() {
+    const VoxelGrid& grid = map_.grid();
+    msg::VoxelGrid m;
+    m.header(conversions::make_header(node_.now_ns()));
+    conversions::fill_msg(growing_voxels(grid.geometry, map_.raw_occupied(), grid.known,
+                                         map_.growth().unknown, grid.version),
+                          m);
+    send(*raw_voxels_, m);
   }
 
   void on_cloud(const sensor_msgs::msg::PointCloud2& m) {
@@ -136,6 +150,7 @@ class MapServerComponent : public Component {
   Publisher<msg::VoxelGrid> voxels_;
   Publisher<msg::VoxelGridUpdate> updates_;
   Publisher<octomap_msgs::msg::Octomap> octomap_;
+  std::optional<Publisher<msg::VoxelGrid>> raw_voxels_;  // where it is asked for
   std::optional<RigidBodyState> vehicle_;
   bool changed_ = false;
 };

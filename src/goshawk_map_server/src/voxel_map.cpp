@@ -170,6 +170,27 @@ Result<VoxelGrid> grow(const RawVoxels& raw, const Growth& growth, std::uint64_t
   return grid;
 }
 
+VoxelGrid growing_voxels(const GridGeometry& geometry, const BitGrid& occupied,
+                         const BitGrid& known, UnknownPolicy unknown, std::uint64_t version) {
+  VoxelGrid grid{.geometry = geometry,
+                 .occupied = occupied,
+                 .known = known,
+                 .version = version,
+                 .inflation_m = 0.0,
+                 .unknown_is_occupied = unknown != UnknownPolicy::free};
+  if (unknown != UnknownPolicy::occupied) return grid;
+  for (int z = 0; z < geometry.size.z; ++z) {
+    for (int y = 0; y < geometry.size.y; ++y) {
+      BitGrid::Word* row = grid.occupied.mutable_row(y, z);
+      const BitGrid::Word* known_row = known.row(y, z);
+      for (std::size_t i = 0; i < occupied.words_per_row(); ++i) {
+        row[i] = growing_word(row[i], known_row[i], unknown);
+      }
+    }
+  }
+  return grid;
+}
+
 Result<VoxelGrid> make_voxel_grid(const RawVoxels& raw, const Growth& growth,
                                   std::uint64_t version) try {
   auto grid = grow(raw, growth, version);

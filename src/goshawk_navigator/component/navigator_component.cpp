@@ -10,13 +10,16 @@ namespace {
 using namespace goshawk::runtime;
 namespace msg = goshawk_msgs::msg;
 
-// Milliseconds since 1970: requests of a restarted navigator never repeat an id.
+// Milliseconds since 1970: requests of a restarted navigator never repeat an id. In simulated time
+// there may be no time yet; a simulation begins anew with its navigator.
 std::uint64_t first_id(std::int64_t now_ns) {
-  return std::uint64_t(now_ns / 1'000'000);
+  return std::max<std::uint64_t>(1, std::uint64_t(now_ns / 1'000'000));
 }
 
+constexpr double kAlive_s = 0.5;  // the newest state again: the tracker lands without it
+
 /// goal_pose, odom, trajectory, stage_report -> plan_request, committed_trajectory,
-/// navigator_state
+/// navigator_state, navigator_alive
 class NavigatorComponent : public Component {
  public:
   explicit NavigatorComponent(Node& node)
@@ -27,6 +30,7 @@ class NavigatorComponent : public Component {
         requests_(node.advertise<msg::PlanRequest>("plan_request", Qos::reliable_last())),
         commits_(node.advertise<msg::CommittedTrajectory>("committed_trajectory", Qos::latched())),
         states_(node.advertise<msg::NavigatorState>("navigator_state", Qos::latched(20))),
+        alive_(node.advertise<msg::NavigatorState>("navigator_alive", Qos::best_effort())),
         path_lines_(node.advertise<nav_msgs::msg::Path>("path_line", Qos::best_effort())),
         markers_(
             node.advertise<visualization_msgs::msg::MarkerArray>("markers", Qos::best_effort())) {
@@ -36,6 +40,7 @@ class NavigatorComponent : public Component {
       carry_out();
     });
     publish(StateOrder{});
+    node.every(kAlive_s, [this] { send(alive_, state_message_); });
     reporter_.ready("waits for a goal on goal_pose");
   }
 
@@ -135,7 +140,7 @@ class NavigatorComponent : public Component {
   }
 
   void publish(const StateOrder& order) {
-    msg::NavigatorState m;
+    auto& m = state_message_;
     m.header(conversions::make_header(node_.now_ns()));
     m.state(std::string(to_string(order.state)));
     m.request_id(order.id);
@@ -157,10 +162,12 @@ class NavigatorComponent : public Component {
   Publisher<msg::PlanRequest> requests_;
   Publisher<msg::CommittedTrajectory> commits_;
   Publisher<msg::NavigatorState> states_;
+  Publisher<msg::NavigatorState> alive_;
   Publisher<nav_msgs::msg::Path> path_lines_;
   Publisher<visualization_msgs::msg::MarkerArray> markers_;
   msg::BezierTrajectory candidate_;  // the newest certified one, to commit
   conversions::ReceivedTrajectory candidate_received_;
+  msg::NavigatorState state_message_;
   std::int64_t wire_ns_ = 0;
 };
 

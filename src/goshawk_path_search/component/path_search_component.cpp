@@ -29,7 +29,7 @@ class PathSearchComponent : public Component {
     node.subscribe<msg::PlanRequest>(
         "plan_request", Qos::reliable_last(),
         [this](const msg::PlanRequest& m, const MessageInfo& info) { on_request(m, info); });
-    reporter_.ready("searches with " + config_.planner + ", " + config_.corner_rule);
+    reporter_.ready("searches with " + std::string(search_.planner_name()) + ", " + config_.corner_rule);
   }
 
  private:
@@ -37,23 +37,46 @@ class PathSearchComponent : public Component {
     Timing timing{.wire_ns = wire_time_ns(m.header(), info)};
     const auto request = open_request(m, node_.now_ns(), reporter_, timing);
     if (!request) return;
-    auto [path, compute_ns] =
-        timed([&] { return search_.plan(request->start.position, request->goal.position); });
+    std::vector<Vec3> goals_map = {request->goal.position};
+    goals_map.insert(goals_map.end(), request->other_goals_map.begin(),
+                     request->other_goals_map.end());
+    const PlanQuery query{.start_map = request->start.position,
+                          .goals_map = goals_map,
+                          .stop = stop_of(*request)};
+    auto [path, compute_ns] = timed([&] { return search_.plan(query); });
     timing.compute_ns = compute_ns;
     if (!path) return reporter_.failed(request->id, path.error(), timing);
     publish(m, *path, compute_ns);
-    reporter_.answered(request->id, timing,
-                       {{"expanded", double(path->counters.expanded)},
-                        {"generated", double(path->counters.generated)},
-                        {"raw_length_m", path->raw_length_m},
-                        {"pruned_length_m", path->pruned_length_m},
-                        {"waypoints_raw", double(path->raw_map.size())},
-                        {"waypoints", double(path->waypoints_map.size())}});
+    report(request->id, *path, timing);
+  }
+
+  /// What is left of the request's deadline.
+  StopSignal stop_of(const conversions::PlanRequest& request) const {
+    if (request.deadline_s == 0.0) return {};
+    return StopSignal::after(request.deadline_s -
+                             double(node_.now_ns() - request.stamp_ns) * 1e-9);
+  }
+
+  void report(std::uint64_t request_id, const PlannedPath& path, Timing timing) {
+    reporter_.set_implementation(path.implementation);
+    reporter_.answered(request_id, timing,
+                       {{"expanded", double(path.counters.expanded)},
+                        {"generated", double(path.counters.generated)},
+                        {"raw_length_m", path.raw_length_m},
+                        {"pruned_length_m", path.pruned_length_m},
+                        {"waypoints_raw", double(path.raw_map.size())},
+                        {"waypoints", double(path.waypoints_map.size())},
+                        {"goal", double(path.goal)},
+                        {"start_moved_m", path.start_moved_m},
+                        {"goal_moved_m", path.goal_moved_m}},
+                       path.note());
   }
 
   void publish(const msg::PlanRequest& request, const PlannedPath& path, std::int64_t compute_ns) {
     msg::Path m;
     m.request(request);
+    // The stages behind this one end where the path ends: at the goal reached, or moved to.
+    m.request().goal().position(conversions::to_point(path.waypoints_map.back()));
     m.implementation(path.implementation);
     m.map_version(map_.grid()->version);
     m.raw(conversions::to_points(path.raw_map));

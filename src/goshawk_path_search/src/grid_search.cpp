@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "goshawk/path_search/bucket_queue.hpp"
@@ -9,11 +10,35 @@
 #include "goshawk/path_search/move_cost.hpp"
 #include "goshawk/path_search/move_rules.hpp"
 #include "goshawk/path_search/obstacle_bits.hpp"
+#include "goshawk/path_search/successor_order.hpp"
 
 namespace goshawk::path_search {
 namespace {
 
 using Node = ObstacleBits::Node;
+
+constexpr int kExpansionsBetweenLooks = 1024;  // at the clock and the stop token
+
+// Moves put off cost a push and a pop: not worth it for so few of them, at the first visit and
+// when they were put off before.
+constexpr int kFewAtFirst = 1;
+constexpr int kFewLater = 8;
+
+// By direction_of().
+constexpr BlockMask kStraightMoves = 0x415410;
+constexpr BlockMask kDiagonalMoves = 0x2aa8aaa;
+
+// The queue hands out the newest of equals, so the moves that the canonical order wants first,
+// those along most axes, are made last.
+int next_in_order(BlockMask moves) {
+  const BlockMask straight = moves & kStraightMoves, diagonal = moves & kDiagonalMoves;
+  return std::countr_zero(straight != 0 ? straight : diagonal != 0 ? diagonal : moves);
+}
+
+bool at_most(int count, BlockMask moves) {
+  for (int k = 0; k < count; ++k) moves &= moves - 1;
+  return moves == 0;
+}
 
 /// Heuristic: a functor of move_cost.hpp. kJumps: canonical successors and straight jumps.
 template <typename Heuristic, bool kJumps>
@@ -22,16 +47,25 @@ class GridSearch final : public GridPlanner {
   GridSearch(std::string_view name, CornerRule rule)
       : name_(name), rule_(rule), rules_(move_rules(rule)) {}
 
+  using GridPlanner::search;
   std::string_view name() const override { return name_; }
-  void set_map(const BitGrid& blocked) override;
-  Status search(Index3 start, Index3 goal, VoxelPath& path) override;
+  using GridPlanner::set_map;
+  void set_map(const BitGrid& blocked, const BitGrid* costly) override;
+  Status search(const GridQuery& query, VoxelPath& path) override;
 
  private:
-  Status check(Index3 start, Index3 goal) const;
-  void run();
-  void expand(Node node);
-  void reach(Node node, Index3 at, Label label);
-  int jump(const Move& move, Index3 from) const;
+  static constexpr bool kOctile = std::is_same_v<Heuristic, OctileHeuristic>;
+
+  Status check(const GridQuery& query) const;
+  void prepare(const GridQuery& query);
+  Status run(const StopSignal& stop);
+  void expand(Node node, BlockMask moves);
+  void expand_all(Node node, Index3 at, Label label, BlockMask moves, BlockMask block);
+  void reach(Node node, Label label, Cost key);
+  int jump(const Move& move, Index3 from, BlockMask block) const;
+  int jump_ends(const Move& move, Index3 from, Index3 goal, int count) const;
+  Cost estimate(Index3 at) const;
+  bool is_goal(Node node) const;
   void trace(VoxelPath& path) const;
 
   std::string_view name_;
@@ -42,12 +76,18 @@ class GridSearch final : public GridPlanner {
   ObstacleBits bits_;
   LabelTable labels_;
   BucketQueue queue_;
+  SuccessorOrder order_;
 
   // Of the query at work.
+  struct Goal {
+    Index3 cell;
+    Node node;
+    std::size_t index;  // in the query
+  };
   Index3 start_;
-  Index3 goal_;
-  Node goal_node_ = 0;
-  Cost bound_ = 0;  // only paths below it are of interest: the best so far
+  std::vector<Goal> goals_;  // without repetition
+  Goal goal_{};              // the only one, or the one reached
+  Cost bound_ = 0;           // only paths below it are of interest: the best so far
   bool reached_ = false;
   bool too_long_ = false;  // something was left out because its cost does not fit a label
   Counters counters_;
@@ -61,7 +101,7 @@ Error too_large(Index3 size) {
 }
 
 template <typename Heuristic, bool kJumps>
-void GridSearch<Heuristic, kJumps>::set_map(const BitGrid& blocked) {
+void GridSearch<Heuristic, kJumps>::set_map(const BitGrid& blocked, const BitGrid*) {
   const bool same_size = has_map_ && bits_.size() == blocked.size();
   if (!same_size) {
     has_map_ = false;
@@ -80,38 +120,22 @@ void GridSearch<Heuristic, kJumps>::set_map(const BitGrid& blocked) {
 }
 
 template <typename Heuristic, bool kJumps>
-Status GridSearch<Heuristic, kJumps>::check(Index3 start, Index3 goal) const {
+Status GridSearch<Heuristic, kJumps>::check(const GridQuery& query) const {
   if (!has_map_) return map_error_;
-  const auto outside = [&](const char* name, Index3 i) {
-    return std::string(name) + " voxel " + to_text(i) + " is outside the map of " +
-           to_text(bits_.size()) + " voxels";
-  };
-  const auto occupied = [](const char* name, Index3 i) {
-    return std::string(name) + " voxel " + to_text(i) + " is blocked: choose a free one";
-  };
-  if (!bits_.contains(start)) return fail(ErrorCode::start_outside, outside("start", start));
-  if (!bits_.contains(goal)) return fail(ErrorCode::goal_outside, outside("goal", goal));
-  if (bits_.blocked(bits_.node(start))) {
-    return fail(ErrorCode::start_occupied, occupied("start", start));
-  }
-  if (bits_.blocked(bits_.node(goal))) {
-    return fail(ErrorCode::goal_occupied, occupied("goal", goal));
-  }
-  return success();
+  return check_ends(query, bits_.size(), [this](Index3 i) { return bits_.blocked(bits_.node(i)); });
 }
 
 template <typename Heuristic, bool kJumps>
-Status GridSearch<Heuristic, kJumps>::search(Index3 start, Index3 goal, VoxelPath& path) {
-  path.cells.clear();
-  path.cost_voxels = 0.0;
-  path.counters = {};
-  if (auto status = check(start, goal); !status) return status;
+Status GridSearch<Heuristic, kJumps>::search(const GridQuery& query, VoxelPath& path) {
+  path.clear();
+  if (auto status = check(query); !status) return status;
   if (!labels_.start_query()) return too_large(bits_.size());
-  start_ = start;
-  goal_ = goal;
-  run();
+  prepare(query);
+  Status ended = run(query.stop);
   path.counters = counters_;
+  if (!ended) return ended;
   if (reached_) {
+    path.goal = goal_.index;
     trace(path);
     return success();
   }
@@ -120,105 +144,181 @@ Status GridSearch<Heuristic, kJumps>::search(Index3 start, Index3 goal, VoxelPat
                 "every path is longer than four million voxels, which this search does not "
                 "follow: use a coarser resolution");
   }
-  return fail(ErrorCode::no_path, "there is no free way from voxel " + to_text(start) + " to " +
-                                      to_text(goal) +
-                                      ": choose another goal, or a smaller radius or margin");
+  return no_way(query);
+}
+
+template <typename Heuristic, bool kJumps>
+void GridSearch<Heuristic, kJumps>::prepare(const GridQuery& query) {
+  start_ = query.start.cell;
+  goals_.clear();
+  for (std::size_t k = 0; k < query.goals.size(); ++k) {
+    const Index3 cell = query.goals[k].cell;
+    if (!is_goal(bits_.node(cell))) goals_.push_back({cell, bits_.node(cell), k});
+  }
+  goal_ = goals_.front();
+  // Keys never fall below the first one if the heuristic is consistent; the Euclidean one is so
+  // but for rounding, the Manhattan one is not.
+  queue_.clear(kOctile ? estimate(start_) : 0);
+  counters_ = {};
+  reached_ = too_long_ = false;
+  bound_ = kMaxCost - kMoveCost[3] * ObstacleBits::kWindow;
 }
 
 // A*, with nodes expanded again when a better way to them appears (which only happens within the
 // width of a bucket, or under a heuristic that is not consistent), until nothing that is left
 // can beat the way found to the goal.
 template <typename Heuristic, bool kJumps>
-void GridSearch<Heuristic, kJumps>::run() {
-  const Cost estimate = Heuristic{}(start_, goal_);
-  // Keys never fall below the first one if the heuristic is consistent; the Euclidean one is so
-  // but for rounding, the Manhattan one is not.
-  queue_.clear(std::is_same_v<Heuristic, OctileHeuristic> ? estimate : 0);
-  counters_ = {};
-  reached_ = too_long_ = false;
-  bound_ = kMaxCost - kMoveCost[3] * ObstacleBits::kWindow;
-  goal_node_ = bits_.node(goal_);
-  reach(bits_.node(start_), start_, LabelTable::extend(labels_.root(), 0, kNoDirection));
+Status GridSearch<Heuristic, kJumps>::run(const StopSignal& stop) {
+  const Node start = bits_.node(start_);
+  reach(start, LabelTable::extend(labels_.root(), 0, kNoDirection), estimate(start_));
+  int left = kExpansionsBetweenLooks;
   while (queue_.advance()) {
     const Cost lowest = queue_.lowest_key();
     if (lowest >= bound_) break;
     const BucketQueue::Entry entry = queue_.pop();
-    if (lowest + entry.rest >= bound_ || (labels_[entry.node] & kExpanded) != 0) continue;
-    expand(entry.node);
+    // A node whose label has improved since is expanded by its newer entry.
+    const bool expanded = (labels_[entry.node] & kExpanded) != 0;
+    if (lowest + entry.rest >= bound_ || expanded != (entry.note != 0)) continue;
+    if (--left == 0) {
+      if (auto status = stop.check(); !status) return status;
+      left = kExpansionsBetweenLooks;
+    }
+    expand(entry.node, entry.note);
+  }
+  return success();
+}
+
+// @param moves that were put off when the node was expanded; 0 where it is expanded now
+template <typename Heuristic, bool kJumps>
+void GridSearch<Heuristic, kJumps>::expand(Node node, BlockMask moves) {
+  const Label label = labels_[node];
+  const Index3 at = bits_.index(node);
+  const BlockMask block = kJumps || moves == 0 ? bits_.block(node) : 0;
+  if (moves == 0) {
+    labels_[node] = label | kExpanded;
+    ++counters_.expanded;
+    moves = kJumps ? rules_.successors(LabelTable::direction(label), block)
+                   : MoveRules::allowed(rule_, block);
+  }
+  if (!kOctile || goals_.size() > 1) return expand_all(node, at, label, moves, block);
+
+  // With one goal and the octile estimate: the moves that raise the key least now, the others
+  // when their turn comes, unless they are so few that coming back costs more.
+  const SuccessorOrder::Case& order = order_.of(goal_.cell - at);
+  const Cost key = labels_.cost(label) + OctileHeuristic{}(at, goal_.cell);
+  std::size_t level = 0;
+  BlockMask now = moves & order.moves[0];
+  while (now == 0 && level + 1 < SuccessorOrder::kLevels) now = moves & order.moves[++level];
+  BlockMask later = moves & ~now;
+  if (at_most(level == 0 ? kFewAtFirst : kFewLater, later)) {
+    now = moves;
+  } else {
+    do ++level;
+    while ((later & order.moves[level]) == 0);
+    const Cost later_key = key + order.least[level];
+    if (later_key < bound_) {
+      queue_.push(node, later_key, later);
+    } else {
+      too_long_ |= !reached_;
+    }
+  }
+  while (now != 0) {
+    const int d = kJumps ? next_in_order(now) : std::countr_zero(now);
+    now &= ~(BlockMask{1} << d);
+    const Move& move = kMoves[std::size_t(d)];
+    const int count = kJumps ? jump(move, at, block) : 1;
+    if (count <= 0) continue;
+    const Node next = Node(node + count * bits_.offset(d));
+    const Label reached = LabelTable::extend(label, count * move.cost, d);
+    if (count == 1) {
+      reach(next, reached, key + order.rise[std::size_t(d)]);
+    } else {
+      const Index3 to{at.x + count * move.step.x, at.y + count * move.step.y,
+                      at.z + count * move.step.z};
+      reach(next, reached, labels_.cost(reached) + OctileHeuristic{}(to, goal_.cell));
+    }
   }
 }
 
 template <typename Heuristic, bool kJumps>
-void GridSearch<Heuristic, kJumps>::expand(Node node) {
-  const Label label = labels_[node];
-  labels_[node] = label | kExpanded;
-  ++counters_.expanded;
-  const Index3 at = bits_.index(node);
-  const int arrival = kJumps ? LabelTable::direction(label) : kNoDirection;
-  BlockMask moves = rules_.successors(arrival, bits_.block(node));
-  // Two passes, so that the labels come from memory at the same time.
-  struct Edge {
-    Node node;
-    int direction;
-    int count;
-  };
-  std::array<Edge, kDirections> edges;
-  std::size_t made = 0;
+void GridSearch<Heuristic, kJumps>::expand_all(Node node, Index3 at, Label label, BlockMask moves,
+                                               BlockMask block) {
   for (; moves != 0; moves &= moves - 1) {
     const int d = std::countr_zero(moves);
-    const int count = kJumps ? jump(kMoves[std::size_t(d)], at) : 1;
+    const Move& move = kMoves[std::size_t(d)];
+    const int count = kJumps ? jump(move, at, block) : 1;
     if (count <= 0) continue;
-    const Node next = Node(node + count * bits_.offset(d));
-    labels_.prefetch(next);
-    edges[made++] = {next, d, count};
+    const Index3 to{at.x + count * move.step.x, at.y + count * move.step.y,
+                    at.z + count * move.step.z};
+    const Label reached = LabelTable::extend(label, count * move.cost, d);
+    reach(Node(node + count * bits_.offset(d)), reached, labels_.cost(reached) + estimate(to));
   }
-  for (std::size_t k = 0; k < made; ++k) {
-    const Edge& edge = edges[k];
-    const Move& move = kMoves[std::size_t(edge.direction)];
-    const Index3 next{at.x + edge.count * move.step.x, at.y + edge.count * move.step.y,
-                      at.z + edge.count * move.step.z};
-    reach(edge.node, next, LabelTable::extend(label, edge.count * move.cost, edge.direction));
+}
+
+template <typename Heuristic, bool kJumps>
+Cost GridSearch<Heuristic, kJumps>::estimate(Index3 at) const {
+  Cost least = Heuristic{}(at, goals_.front().cell);
+  for (std::size_t k = 1; k < goals_.size(); ++k) {
+    least = std::min(least, Heuristic{}(at, goals_[k].cell));
   }
+  return least;
+}
+
+template <typename Heuristic, bool kJumps>
+bool GridSearch<Heuristic, kJumps>::is_goal(Node node) const {
+  for (const Goal& goal : goals_) {
+    if (goal.node == node) return true;
+  }
+  return false;
 }
 
 // How many moves of this kind make one edge of the search; 0 or less for a dead end.
 template <typename Heuristic, bool kJumps>
-int GridSearch<Heuristic, kJumps>::jump(const Move& move, Index3 from) const {
+int GridSearch<Heuristic, kJumps>::jump(const Move& move, Index3 from, BlockMask block) const {
   if (move.axis < 0) return 1;
-  const int count = bits_.straight_jump(rule_, move.axis, move.sign, from);
-  // The goal ends a jump, too.
-  const Index3 left = goal_ - from;
+  // Where the ring around the next voxel differs from the one here, a jump would mostly end there.
+  if (MoveRules::ring_changes(move, block)) return 1;
+  int count = bits_.straight_jump(rule_, move.axis, move.sign, from);
+  for (const Goal& goal : goals_) count = jump_ends(move, from, goal.cell, count);
+  return count;
+}
+
+// The goal ends a jump, too.
+template <typename Heuristic, bool kJumps>
+int GridSearch<Heuristic, kJumps>::jump_ends(const Move& move, Index3 from, Index3 goal,
+                                             int count) const {
+  const Index3 left = goal - from;
   const int along = move.sign * (move.axis == 0 ? left.x : move.axis == 1 ? left.y : left.z);
   const bool in_line = std::abs(left.x) + std::abs(left.y) + std::abs(left.z) == along;
   return in_line && along > 0 && along <= std::abs(count) ? along : count;
 }
 
 template <typename Heuristic, bool kJumps>
-void GridSearch<Heuristic, kJumps>::reach(Node node, Index3 at, Label label) {
-  Label& held = labels_[node];
-  if (!LabelTable::improves(label, held)) return;
-  const Cost cost = labels_.cost(label);
-  const Cost key = cost + Heuristic{}(at, goal_);
+void GridSearch<Heuristic, kJumps>::reach(Node node, Label label, Cost key) {
   if (key >= bound_) {
     too_long_ |= !reached_;
     return;
   }
+  Label& held = labels_[node];
+  if (!LabelTable::improves(label, held)) return;
   held = label;
   ++counters_.generated;
-  if (node == goal_node_) {
-    bound_ = cost;
+  for (const Goal& goal : goals_) {
+    if (node != goal.node) continue;
+    goal_ = goal;
+    bound_ = labels_.cost(label);
     reached_ = true;
-  } else {
-    queue_.push(node, key);
+    return;
   }
+  queue_.push(node, key, 0);
 }
 
 // Back from the goal against the directions of arrival. Voxels inside a jump have no label that
 // fits; the first one behind whose label accounts for the cost is where the jump began.
 template <typename Heuristic, bool kJumps>
 void GridSearch<Heuristic, kJumps>::trace(VoxelPath& path) const {
-  Node node = goal_node_;
-  Index3 at = goal_;
+  Node node = goal_.node;
+  Index3 at = goal_.cell;
   Label label = labels_[node];
   Cost cost = labels_.cost(label);
   std::array<std::int64_t, 4> moves{};

@@ -99,11 +99,6 @@ std::vector<BlockMask> bypasses(CornerRule rule, int direction, int target) {
   return BypassFinder(rule, direction, target).minimal();
 }
 
-void MoveRules::Lanes::set(int lane, int target) {
-  std::uint64_t& word = lane < 2 ? low : high;
-  word |= std::uint64_t{bit(target)} << (lane % 2 * 32);
-}
-
 MoveRules::MoveRules(CornerRule rule) {
   for (int d = 0; d < kDirections; ++d) {
     for (int target = 0; target < kDirections; ++target) {
@@ -121,7 +116,7 @@ void MoveRules::add_move(CornerRule rule, int direction, int target) {
     if (std::size_t(lane) < ways.size()) {
       block(direction, ways[std::size_t(lane)], lane + 1, target);
     } else {
-      base_[std::size_t(direction)].set(lane + 1, target);
+      base_[std::size_t(direction)][lane + 1] |= bit(target);
     }
   }
 }
@@ -132,7 +127,7 @@ void MoveRules::block(int direction, BlockMask cells, int lane, int target) {
     const BlockMask in_row = (cells >> (3 * row)) & 7U;
     for (BlockMask pattern = 0; pattern < 8; ++pattern) {
       if ((pattern & in_row) == 0) continue;
-      table_[std::size_t(direction)][std::size_t(row)][pattern].set(lane, target);
+      table_[std::size_t(direction)][std::size_t(row)][pattern][lane] |= bit(target);
     }
   }
 }

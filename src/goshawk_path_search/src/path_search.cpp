@@ -1,8 +1,10 @@
 #include "goshawk/path_search/path_search.hpp"
 
+#include <algorithm>
+#include <cstdio>
 #include <utility>
 
-#include "goshawk/core/line_of_sight.hpp"
+#include "goshawk/path_search/reachable.hpp"
 
 namespace goshawk::path_search {
 namespace {
@@ -13,26 +15,47 @@ double polyline_length(const std::vector<Vec3>& points) {
   return sum;
 }
 
-// goshawk::locate builds its sentence before it knows whether one is needed, and so allocates:
-// asked only where there is something to say.
-Result<Index3> find_voxel(const VoxelGrid& map, const Vec3& p_map, Endpoint endpoint) {
-  if (is_finite(p_map)) {
-    const auto index = map.geometry.index_of(p_map);
-    if (index && !map.occupied.get(*index)) return *index;
+std::string metres(double value_m) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3f m", value_m);
+  return text;
+}
+
+StopSignal earlier(const StopSignal& asked, double time_limit_s) {
+  StopSignal stop = StopSignal::after(time_limit_s);
+  if (asked.deadline && (!stop.deadline || *asked.deadline < *stop.deadline)) {
+    stop.deadline = asked.deadline;
   }
-  return locate(map, p_map, endpoint);
+  stop.token = asked.token;
+  return stop;
 }
 
 }  // namespace
 
+std::string PlannedPath::note() const {
+  std::string text;
+  const auto add = [&text](const std::string& what) { text += (text.empty() ? "" : "; ") + what; };
+  if (start_moved_m > 0.0)
+    add("start moved by " + metres(start_moved_m) + " to the nearest free voxel");
+  if (cut_off) {
+    add("no goal can be reached: the path ends " + metres(goal_moved_m) + " from the nearest one");
+  } else if (goal_moved_m > 0.0) {
+    add("goal moved by " + metres(goal_moved_m) + " to the nearest free voxel");
+  }
+  return text;
+}
+
 Result<PathSearch> PathSearch::create(const Config& config) {
+  if (auto status = check(config); !status) return status.error();
   auto planner = make_planner(config);
   if (!planner) return planner.error();
   const auto rule = parse_corner_rule(config.corner_rule);
   if (!rule) return rule.error();
   const auto pruning = parse_pruning(config.pruning);
   if (!pruning) return pruning.error();
-  return PathSearch(std::move(planner).value(), *rule, *pruning);
+  const auto box = parse_search_box(config.search_box);
+  if (!box) return box.error();
+  return PathSearch(config, std::move(planner).value(), *rule, *pruning, *box);
 }
 
 void PathSearch::set_map(std::shared_ptr<const VoxelGrid> map) {
@@ -45,49 +68,116 @@ void PathSearch::set_map(std::shared_ptr<const VoxelGrid> map) {
     map_error_ = status.error();
     return;
   }
-  planner_->set_map(map->occupied);
-  map_ = std::move(map);
+  auto searched = make_search_map(std::move(map), config_, box_);
+  if (!searched) {
+    map_error_ = searched.error();
+    return;
+  }
+  // Lengths in metres are voxels to a planner.
+  const double resolution_m = (*searched)->geometry.resolution_m;
+  if (resolution_m != planner_resolution_m_) {
+    auto planner = make_planner(config_, resolution_m);
+    if (!planner) {
+      map_error_ = planner.error();
+      return;
+    }
+    planner_ = *std::move(planner);
+    planner_resolution_m_ = resolution_m;
+  }
+  map_ = *std::move(searched);
+  const auto unknown = config_.unknown == "costly" ? unknown_voxels(*map_) : std::nullopt;
+  planner_->set_map(map_->occupied, unknown ? &*unknown : nullptr);
 }
 
-Result<PlannedPath> PathSearch::plan(const Vec3& start_map, const Vec3& goal_map) {
+Result<PlannedPath> PathSearch::plan(const PlanQuery& query) {
   PlannedPath path;
-  if (auto status = plan(start_map, goal_map, path); !status) return status.error();
+  if (auto status = plan(query, path); !status) return status.error();
   return path;
 }
 
+Result<PlannedPath> PathSearch::plan(const Vec3& start_map, const Vec3& goal_map) {
+  return plan(PlanQuery{.start_map = start_map, .goals_map = {&goal_map, 1}});
+}
+
 Status PathSearch::plan(const Vec3& start_map, const Vec3& goal_map, PlannedPath& path) {
+  return plan(PlanQuery{.start_map = start_map, .goals_map = {&goal_map, 1}}, path);
+}
+
+Status PathSearch::plan(const PlanQuery& query, PlannedPath& path) {
   if (!map_) return map_error_;
-  const auto start = find_voxel(*map_, start_map, Endpoint::start);
-  if (!start) return start.error();
-  const auto goal = find_voxel(*map_, goal_map, Endpoint::goal);
-  if (!goal) return goal.error();
-  if (rule_ == CornerRule::no_squeeze) {
-    if (auto s = check_clear_of_faces(start_map, Endpoint::start); !s) return s;
-    if (auto s = check_clear_of_faces(goal_map, Endpoint::goal); !s) return s;
-  }
-  if (auto status = planner_->search(*start, *goal, voxel_path_); !status) return status;
-  fill(start_map, goal_map, path);
+  path.cut_off = false;
+  if (auto status = place(query); !status) return status;
+  if (auto status = search(query, path); !status) return status;
+  fill(path);
   return success();
 }
 
-// A free voxel's face may be an obstacle's: no segment from a point on it clears that obstacle.
-Status PathSearch::check_clear_of_faces(const Vec3& p_map, Endpoint endpoint) const {
-  if (line_is_free(*map_, p_map, p_map)) return success();
-  const bool start = endpoint == Endpoint::start;
-  return fail(start ? ErrorCode::start_occupied : ErrorCode::goal_occupied,
-              std::string(start ? "start " : "goal ") + to_text(p_map) +
-                  " lies on the face of a blocked voxel or of the map: move it a little into the "
-                  "free voxel, or use corner_rule squeeze");
+Status PathSearch::place(const PlanQuery& query) {
+  const auto placed = [&](const Vec3& p, Endpoint endpoint) {
+    auto end = place_end(*map_, rule_, p, endpoint, config_.move_within_m);
+    const bool outside =
+        end.code() == ErrorCode::start_outside || end.code() == ErrorCode::goal_outside;
+    if (!outside || !box_) return end;
+    return Result<PlacedEnd>(fail(end.code(), end.error().message + " (cut by search_box)"));
+  };
+  const auto start = placed(query.start_map, Endpoint::start);
+  if (!start) return start.error();
+  start_ = *start;
+  goals_.clear();
+  goal_numbers_.clear();
+  goal_ends_.clear();
+  std::optional<Error> first;
+  for (std::size_t k = 0; k < query.goals_map.size(); ++k) {
+    const auto goal = placed(query.goals_map[k], Endpoint::goal);
+    if (!goal) {
+      if (!first) first = goal.error();
+      continue;
+    }
+    goals_.push_back(*goal);
+    goal_numbers_.push_back(k);
+    goal_ends_.push_back(goal->end);
+  }
+  if (goals_.empty() && first) return *first;
+  return success();
 }
 
-void PathSearch::fill(const Vec3& start_map, const Vec3& goal_map, PlannedPath& path) {
+Status PathSearch::search(const PlanQuery& query, PlannedPath& path) {
+  GridQuery voxels{
+      .start = start_.end, .goals = goal_ends_, .stop = earlier(query.stop, config_.time_limit_s)};
+  Status status = planner_->search(voxels, voxel_path_);
+  if (status.code() != ErrorCode::no_path || !config_.nearest_reachable) return status;
+  const auto nearest = nearest_reachable(map_->occupied, rule_, voxels);
+  if (!nearest) return nearest.error();
+  // One goal is left: the nearest one, moved to the voxel found.
+  const Vec3 center_map = map_->geometry.center(*nearest);
+  const auto distance = [&](const PlacedEnd& goal) { return (goal.at_map - center_map).norm(); };
+  const auto best = std::ranges::min_element(goals_, {}, distance);
+  const auto number = goal_numbers_[std::size_t(best - goals_.begin())];
+  const bool at_start = *nearest == start_.end.cell;
+  PlacedEnd moved{center_map, End::center_of(*nearest),
+                  (center_map - query.goals_map[number]).norm()};
+  if (at_start)
+    moved = {start_.at_map, start_.end, (start_.at_map - query.goals_map[number]).norm()};
+  goals_.assign(1, moved);
+  goal_numbers_.assign(1, number);
+  goal_ends_.assign(1, moved.end);
+  voxels.goals = goal_ends_;
+  path.cut_off = true;
+  return planner_->search(voxels, voxel_path_);
+}
+
+void PathSearch::fill(PlannedPath& path) {
   const GridGeometry& geometry = map_->geometry;
+  const PlacedEnd& goal = goals_[voxel_path_.goal];
   path.raw_map.clear();
-  path.raw_map.push_back(start_map);
+  path.raw_map.push_back(start_.at_map);
   for (std::size_t i = 1; i + 1 < voxel_path_.cells.size(); ++i) {
     path.raw_map.push_back(geometry.center(voxel_path_.cells[i]));
   }
-  path.raw_map.push_back(goal_map);
+  for (std::size_t i = 1; i + 1 < voxel_path_.points.size(); ++i) {
+    path.raw_map.push_back(geometry.origin_map + geometry.resolution_m * voxel_path_.points[i]);
+  }
+  path.raw_map.push_back(goal.at_map);
   nodes_grid_.clear();
   for (const Vec3& p : path.raw_map) nodes_grid_.push_back(geometry.to_grid(p));
   pruner_.prune(pruning_, map_->occupied, nodes_grid_, kept_);
@@ -98,6 +188,9 @@ void PathSearch::fill(const Vec3& start_map, const Vec3& goal_map, PlannedPath& 
   path.cost = voxel_path_.cost_voxels * geometry.resolution_m;
   path.counters = voxel_path_.counters;
   path.implementation = planner_->name();
+  path.goal = goal_numbers_[voxel_path_.goal];
+  path.start_moved_m = start_.moved_m;
+  path.goal_moved_m = goal.moved_m;
 }
 
 }  // namespace goshawk::path_search

@@ -7,6 +7,7 @@
 #include <limits>
 #include <queue>
 
+#include "goshawk/path_search/successor_order.hpp"
 #include "reference.hpp"
 
 namespace goshawk::path_search {
@@ -15,12 +16,6 @@ namespace {
 using reference::Random;
 constexpr CornerRule kRules[] = {CornerRule::no_squeeze, CornerRule::squeeze};
 constexpr BlockMask kAll = (BlockMask{1} << kDirections) - 1;
-
-MoveRules::Rows rows_of(BlockMask blocked) {
-  MoveRules::Rows rows;
-  for (std::size_t r = 0; r < 9; ++r) rows[r] = std::uint8_t((blocked >> (3 * r)) & 7U);
-  return rows;
-}
 
 BlockMask blocked_bits(const BitGrid& block) {
   BlockMask mask = 0;
@@ -44,7 +39,10 @@ void expect_sound(CornerRule rule, int direction, const BitGrid& block) {
   }
   BitGrid without_center = block;
   if (squeeze) without_center.set(center, true);
-  const BlockMask moves = move_rules(rule).successors(direction, rows_of(blocked_bits(block)));
+  // Under no-squeeze a move past the centre needs it free, so it is left in the block; a way over
+  // it is then as long as the one that is judged.
+  const auto around = reference::distances(without_center, before, squeeze);
+  const BlockMask moves = move_rules(rule).successors(direction, blocked_bits(block));
   for (int d = 0; d < kDirections; ++d) {
     if (d == kNoDirection) continue;
     const Index3 target = center + step_of(d);
@@ -54,9 +52,6 @@ void expect_sound(CornerRule rule, int direction, const BitGrid& block) {
       ASSERT_FALSE(made);
       continue;
     }
-    // Under no-squeeze a move past the centre needs it free, so it is left in the block; a way
-    // over it is then as long as the one that is judged.
-    const auto around = reference::distances(without_center, before, squeeze);
     const double other = reference::distance_to(around, block.size(), target);
     const double through = length_of(direction) + length_of(d);
     if (!made) {
@@ -81,6 +76,43 @@ TEST(MoveRules, PruneOnlyWhatAnotherWayInTheBlockReachesAndAllThatIsReachedSoone
   }
 }
 
+// The voxels that occur in any bypass of any target.
+BlockMask relevant_voxels(CornerRule rule, int direction) {
+  BlockMask relevant = 0;
+  for (int t = 0; t < kDirections; ++t) {
+    if (t == kNoDirection) continue;
+    for (const BlockMask cells : bypasses(rule, direction, t)) relevant |= cells;
+  }
+  return relevant;
+}
+
+BitGrid block_of(BlockMask blocked) {
+  BitGrid block({3, 3, 3}, true);
+  for (int d = 0; d < kDirections; ++d) {
+    if ((blocked >> d & 1U) != 0) block.set(step_of(d) + Index3{1, 1, 1}, true);
+  }
+  return block;
+}
+
+// Every state of every voxel that can force a neighbour, for all 26 arrivals and both rules; the
+// other voxels once free and once by chance.
+TEST(MoveRules, AreSoundInEveryNeighbourhoodThatMatters) {
+  Random random(16);
+  for (const CornerRule rule : kRules) {
+    for (int d = 0; d < kDirections; ++d) {
+      if (d == kNoDirection) continue;
+      const BlockMask relevant = relevant_voxels(rule, d);
+      BlockMask blocked = 0;
+      do {
+        expect_sound(rule, d, block_of(blocked));
+        expect_sound(rule, d, block_of(blocked | (BlockMask(random.next()) & kAll & ~relevant)));
+        if (HasFatalFailure()) FAIL() << "arrival " << d << ", blocked " << blocked;
+        blocked = (blocked - relevant) & relevant;  // the next subset
+      } while (blocked != 0);
+    }
+  }
+}
+
 // Exhaustive: the lookup gives what the bypass sets say, for every state of the voxels that occur
 // in them.
 TEST(MoveRules, LookUpWhatTheBypassesSay) {
@@ -96,7 +128,7 @@ TEST(MoveRules, LookUpWhatTheBypassesSay) {
       ASSERT_LE(std::popcount(relevant), 12);
       BlockMask blocked = 0;
       do {
-        const BlockMask moves = move_rules(rule).successors(d, rows_of(blocked));
+        const BlockMask moves = move_rules(rule).successors(d, blocked);
         for (int t = 0; t < kDirections; ++t) {
           if (t == kNoDirection) continue;
           bool needed = (cells_of_move(rule, {}, step_of(t)) & blocked) == 0;
@@ -115,9 +147,47 @@ TEST(MoveRules, KeepOneThreeOrSevenSuccessorsInFreeSpace) {
     for (int d = 0; d < kDirections; ++d) {
       const int axes = axes_changed(d);
       const int expected = axes == 0 ? 26 : (1 << axes) - 1;
-      EXPECT_EQ(std::popcount(move_rules(rule).successors(d, rows_of(0))), expected) << d;
+      EXPECT_EQ(std::popcount(move_rules(rule).successors(d, 0)), expected) << d;
     }
-    EXPECT_EQ(move_rules(rule).successors(kNoDirection, rows_of(kAll)), 0U);
+    EXPECT_EQ(move_rules(rule).successors(kNoDirection, kAll), 0U);
+  }
+}
+
+TEST(MoveRules, AllowByMasksWhatTheTableAllowsInEveryBlock) {
+  Random random(14);
+  for (const CornerRule rule : kRules) {
+    for (int n = 0; n < 200000; ++n) {
+      const auto bits = BlockMask(random.next() & random.next());
+      const BlockMask blocked =
+          (n % 2 == 0 ? bits : ~bits) & kAll & ~(BlockMask{1} << kNoDirection);
+      ASSERT_EQ(MoveRules::allowed(rule, blocked),
+                move_rules(rule).successors(kNoDirection, blocked))
+          << blocked;
+    }
+  }
+}
+
+TEST(SuccessorOrder, KnowsTheRiseOfEveryMoveFromItsCaseAlone) {
+  Random random(15);
+  SuccessorOrder order;
+  for (int n = 0; n < 200000; ++n) {
+    const int reach = n % 2 == 0 ? 3 : 40;
+    const auto any = [&] { return random.below(2 * reach + 1) - reach; };
+    const Index3 left{any(), any(), any()};
+    const SuccessorOrder::Case& c = order.of(left);
+    BlockMask all = 0;
+    for (std::size_t level = 0; level < SuccessorOrder::kLevels; ++level) {
+      ASSERT_EQ(all & c.moves[level], 0U);
+      all |= c.moves[level];
+      for (BlockMask m = c.moves[level]; m != 0; m &= m - 1) {
+        const int d = std::countr_zero(m);
+        const Cost rise = kMoves[std::size_t(d)].cost + OctileHeuristic{}(step_of(d), left) -
+                          OctileHeuristic{}({}, left);
+        ASSERT_EQ(Cost{c.rise[std::size_t(d)]}, rise) << to_text(left) << " " << d;
+        ASSERT_GE(rise, Cost{c.least[level]});
+      }
+    }
+    ASSERT_EQ(all, kAll & ~(BlockMask{1} << kNoDirection));
   }
 }
 

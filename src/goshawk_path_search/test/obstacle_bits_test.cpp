@@ -22,9 +22,9 @@ TEST(ObstacleBits, HoldTheMapInsideABlockedLayer) {
           const auto node = bits.node(at);
           ASSERT_EQ(bits.index(node), at);
           ASSERT_EQ(bits.blocked(node), map.get(at));
-          const auto rows = bits.block(node);
+          const BlockMask block = bits.block(node);
           for (int d = 0; d < kDirections; ++d) {
-            ASSERT_EQ((rows[std::size_t(d / 3)] >> (d % 3) & 1) != 0, map.test(at + step_of(d)));
+            ASSERT_EQ((block >> d & 1U) != 0, map.test(at + step_of(d)));
           }
         }
       }

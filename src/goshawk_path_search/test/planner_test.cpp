@@ -49,14 +49,17 @@ void expect_truth(std::vector<std::unique_ptr<GridPlanner>>& planners, const Bit
   }
 }
 
+// Three goals a map: 102,000 queries of JA* and A*, a tenth of them of the others.
 TEST(Planners, FindTheDijkstraLengthOnEveryRandomMap) {
   for (const auto& rule : kRules) {
-    std::vector<std::unique_ptr<GridPlanner>> planners;
-    for (const auto& name : kExact) planners.push_back(planner_of(name, rule));
-    planners.push_back(planner_of("astar_manhattan", rule));
+    std::vector<std::unique_ptr<GridPlanner>> best, all;
+    for (const auto* name : {"jastar", "astar"}) best.push_back(planner_of(name, rule));
+    for (const auto& name : kExact) all.push_back(planner_of(name, rule));
+    all.push_back(planner_of("astar_manhattan", rule));
     Random random(1);
-    for (int n = 0; n < 6000; ++n) {
-      expect_truth(planners, reference::any_map(random), rule == "squeeze", random);
+    for (int n = 0; n < 17000; ++n) {
+      const BitGrid map = reference::any_map(random);
+      expect_truth(n % 10 == 0 ? all : best, map, rule == "squeeze", random);
       if (HasFatalFailure()) FAIL() << rule << ", map " << n;
     }
   }

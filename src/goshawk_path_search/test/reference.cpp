@@ -31,6 +31,11 @@ bool move_is_allowed(const BitGrid& blocked, Index3 from, Index3 to, bool squeez
 }
 
 std::vector<double> distances(const BitGrid& blocked, Index3 start, bool squeeze) {
+  return distances(blocked, start, squeeze, move_length);
+}
+
+std::vector<double> distances(const BitGrid& blocked, Index3 start, bool squeeze,
+                              const MoveCostOf& cost) {
   const Index3 size = blocked.size();
   std::vector<double> best(std::size_t(blocked.voxels()), std::numeric_limits<double>::infinity());
   struct Open {
@@ -50,7 +55,7 @@ std::vector<double> distances(const BitGrid& blocked, Index3 start, bool squeeze
         for (int dx = -1; dx <= 1; ++dx) {
           const Index3 next = node.at + Index3{dx, dy, dz};
           if (next == node.at || !move_is_allowed(blocked, node.at, next, squeeze)) continue;
-          const double length = node.length + move_length(node.at, next);
+          const double length = node.length + cost(node.at, next);
           if (length < best[flat(next, size)]) {
             best[flat(next, size)] = length;
             open.push({length, next});
@@ -68,6 +73,11 @@ double distance_to(const std::vector<double>& distances, Index3 size, Index3 goa
 
 std::string fault_of_path(const BitGrid& blocked, const std::vector<Index3>& cells, Index3 start,
                           Index3 goal, bool squeeze, double length) {
+  return fault_of_path(blocked, cells, start, goal, squeeze, length, move_length);
+}
+
+std::string fault_of_path(const BitGrid& blocked, const std::vector<Index3>& cells, Index3 start,
+                          Index3 goal, bool squeeze, double length, const MoveCostOf& cost) {
   if (cells.empty()) return "no cells";
   if (!(cells.front() == start) || !(cells.back() == goal)) return "wrong ends";
   double sum = 0.0;
@@ -79,7 +89,7 @@ std::string fault_of_path(const BitGrid& blocked, const std::vector<Index3>& cel
     if (!move_is_allowed(blocked, cells[i - 1], cells[i], squeeze)) {
       return "a move that the rule forbids at " + std::to_string(i);
     }
-    sum += move_length(cells[i - 1], cells[i]);
+    sum += cost(cells[i - 1], cells[i]);
   }
   if (std::abs(sum - length) > 1e-9 * (1.0 + sum)) return "cost is not the length of the cells";
   return "";

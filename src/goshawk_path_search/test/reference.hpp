@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -20,11 +21,17 @@ bool move_is_allowed(const BitGrid& blocked, Index3 from, Index3 to, bool squeez
 /// Textbook Dijkstra from one voxel. @return the length to every voxel, x fastest, infinite where
 /// there is no way
 std::vector<double> distances(const BitGrid& blocked, Index3 start, bool squeeze);
+/// The same for any cost of a move between neighbours, above zero.
+using MoveCostOf = std::function<double(Index3 from, Index3 to)>;
+std::vector<double> distances(const BitGrid& blocked, Index3 start, bool squeeze,
+                              const MoveCostOf& cost);
 double distance_to(const std::vector<double>& distances, Index3 size, Index3 goal);
 
 /// Checks the moves and their sum. @return "" or what is wrong
 std::string fault_of_path(const BitGrid& blocked, const std::vector<Index3>& cells, Index3 start,
                           Index3 goal, bool squeeze, double length);
+std::string fault_of_path(const BitGrid& blocked, const std::vector<Index3>& cells, Index3 start,
+                          Index3 goal, bool squeeze, double length, const MoveCostOf& cost);
 
 /// Voxels drawn independently.
 BitGrid noise_map(Index3 size, double ratio, Random& random);

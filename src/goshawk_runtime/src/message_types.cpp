@@ -3,6 +3,7 @@
 #include "message_type_impl.hpp"
 #include "nav_msgsPubSubTypes.h"
 #include "octomap_msgsPubSubTypes.h"
+#include "rosgraph_msgsPubSubTypes.h"
 #include "safe_type.hpp"
 #include "sensor_msgsPubSubTypes.h"
 #include "std_msgsPubSubTypes.h"
@@ -45,6 +46,7 @@ GOSHAWK_MESSAGE(sensor_msgs, PointCloud2)
 GOSHAWK_MESSAGE(visualization_msgs, MarkerArray)
 GOSHAWK_MESSAGE(octomap_msgs, Octomap)
 GOSHAWK_MESSAGE(tf2_msgs, TFMessage)
+GOSHAWK_MESSAGE(rosgraph_msgs, Clock)
 GOSHAWK_MESSAGE(goshawk_msgs, VoxelGrid)
 GOSHAWK_MESSAGE(goshawk_msgs, VoxelGridUpdate)
 GOSHAWK_MESSAGE(goshawk_msgs, PlanRequest)
@@ -57,5 +59,6 @@ GOSHAWK_MESSAGE(goshawk_msgs, StageReport)
 GOSHAWK_MESSAGE(goshawk_msgs, NavigatorState)
 GOSHAWK_MESSAGE(goshawk_msgs, TrackingState)
 GOSHAWK_MESSAGE(goshawk_msgs, VehicleStatus)
+GOSHAWK_MESSAGE(goshawk_msgs, Turn)
 
 }  // namespace goshawk::runtime

@@ -4,24 +4,16 @@
 #include <spdlog/spdlog.h>
 
 #include <fastrtps/types/TypesBase.h>
-#include <atomic>
 #include <bit>
-#include <chrono>
 #include <cmath>
-#include <deque>
-#include <fastdds/dds/core/condition/GuardCondition.hpp>
-#include <fastdds/dds/core/condition/WaitSet.hpp>
 #include <fastdds/dds/publisher/DataWriter.hpp>
-#include <fastdds/dds/subscriber/DataReader.hpp>
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
 
 #include "any_type.hpp"
-#include "context_impl.hpp"
-#include "message_type_impl.hpp"
+#include "node_impl.hpp"
 
 namespace goshawk::runtime {
 
-using Steady = std::chrono::steady_clock;
 using eprosima::fastrtps::types::ReturnCode_t;
 
 namespace {
@@ -110,67 +102,32 @@ void apply(const Qos& qos, EndpointQos& out) {
       rtps::MemoryManagementPolicy_t::DYNAMIC_REUSABLE_MEMORY_MODE;
 }
 
-struct Subscription {
-  dds::DataReader* reader = nullptr;
-  std::string topic;
-  dds::TypeSupport type;
-  void* object = nullptr;  // one, used again for every message
-  Node::RawCallback callback;
-  std::uint64_t undecoded = 0;
-};
-
-struct Timer {
-  Steady::duration period;
-  Steady::time_point next;
-  std::function<void()> callback;
-};
-
 }  // namespace
 
-struct Node::Impl {
-  explicit Impl(Context& c) : context(c.impl()) { wait_set.attach_condition(stop); }
-
-  ~Impl() {
-    for (auto& s : subscriptions) {
-      wait_set.detach_condition(s->reader->get_statuscondition());
-      context.subscriber->delete_datareader(s->reader);
-      s->type.delete_data(s->object);
+void Node::Impl::wait(double timeout_s) {
+  // Timers of simulated time become due by messages, not by waiting.
+  if (!time.on) {
+    for (const auto& timer : timers) {
+      timeout_s = std::min(timeout_s, double(timer.next_ns - timer_now_ns()) * 1e-9);
     }
   }
+  wait_set.wait(active, to_duration(more ? 0.0 : timeout_s));
+}
 
-  Context::Impl& context;
-  dds::GuardCondition stop;
-  std::atomic<bool> stopping = false;
-  dds::WaitSet wait_set;
-  dds::ConditionSeq active;
-  std::vector<std::unique_ptr<Subscription>> subscriptions;
-  std::deque<Timer> timers;  // a callback may add one: elements stay where they are
-  bool more = false;         // the last pass left messages behind
-
-  void wait(Steady::time_point until);
-  void run_due_timers(const Node& node);
-  /// @return whether messages are left
-  bool take_some(const Node& node, Subscription& subscription);
-  /// An exception is a bug of the component: said, then left to end the process.
-  template <typename Callback, typename... Arguments>
-  void call(const Node& node, const std::string& what, const Callback& callback,
-            const Arguments&... arguments);
-};
-
-void Node::Impl::wait(Steady::time_point until) {
-  for (const auto& timer : timers) until = std::min(until, timer.next);
-  const std::chrono::duration<double> left = until - Steady::now();
-  wait_set.wait(active, to_duration(more ? 0.0 : left.count()));
+bool Node::Impl::wait_for_turn(Subscription& s, double timeout_s) {
+  auto& condition = s.reader->get_statuscondition();
+  if (!condition.get_trigger_value()) turn_wait_set.wait(active, to_duration(timeout_s));
+  return condition.get_trigger_value() && !stopping;
 }
 
 void Node::Impl::run_due_timers(const Node& node) {
   // By index: a callback may add a timer.
   for (std::size_t i = 0; i < timers.size() && !stopping; ++i) {
     auto& timer = timers[i];
-    const auto now = Steady::now();
-    if (now < timer.next) continue;
-    timer.next += timer.period;
-    if (timer.next < now) timer.next = now + timer.period;
+    const std::int64_t now_ns = timer_now_ns();
+    if (now_ns < timer.next_ns) continue;
+    timer.next_ns += timer.period_ns;
+    if (timer.next_ns < now_ns) timer.next_ns = now_ns + timer.period_ns;
     call(node, "a timer", timer.callback);
   }
 }
@@ -187,12 +144,12 @@ void Node::Impl::call(const Node& node, const std::string& what, const Callback&
   }
 }
 
-bool Node::Impl::take_some(const Node& node, Subscription& s) {
+int Node::Impl::take_some(const Node& node, Subscription& s) {
   dds::SampleInfo info;
   Sample sample{s.type.get(), s.object};
   for (int i = 0; i < kMostAtOnce; ++i) {
     sample.decoded = false;
-    if (s.reader->take_next_sample(&sample, &info) != ReturnCode_t::RETCODE_OK) return false;
+    if (s.reader->take_next_sample(&sample, &info) != ReturnCode_t::RETCODE_OK) return i;
     if (!info.valid_data) continue;
     if (!sample.decoded) {
       // The 1st, 2nd, 4th, 8th ...: a hostile sender must not fill the disk.
@@ -205,9 +162,9 @@ bool Node::Impl::take_some(const Node& node, Subscription& s) {
       continue;
     }
     call(node, s.topic, s.callback, s.object, MessageInfo{node.now_ns()});
-    if (stopping) return false;
+    if (stopping) return i + 1;
   }
-  return true;
+  return kMostAtOnce;
 }
 
 Node::Node(Context& context, std::string name, RosArgs args, std::shared_ptr<const Clock> clock)
@@ -223,6 +180,10 @@ Node::Node(Context& context, std::string name, RosArgs args, std::shared_ptr<con
 }
 
 Node::~Node() = default;
+
+std::int64_t Node::now_ns() const {
+  return impl_->time.on ? impl_->time.now_ns : clock_->now_ns();
+}
 
 std::string Node::full_name() const {
   return (args_.node_namespace == "/" ? "" : args_.node_namespace) + "/" + name_;
@@ -252,21 +213,21 @@ std::shared_ptr<detail::Writer> Node::make_writer(std::string_view topic, const 
   return std::make_shared<detail::Writer>(publisher, writer, type.impl().support, name);
 }
 
-void Node::subscribe_raw(std::string_view topic, const MessageType& type, Qos qos,
-                         RawCallback callback) {
-  const std::string name = args_.resolve_topic(topic);
-  auto* dds_topic = impl_->context.topic(name, type.impl().support);
+std::unique_ptr<Subscription> Node::Impl::open(const Node& node, const std::string& name,
+                                               const MessageType& type, Qos qos,
+                                               Node::RawCallback callback) {
+  auto* dds_topic = context.topic(name, type.impl().support);
   dds::DataReaderQos reader_qos;
-  auto* subscriber = impl_->context.subscriber;
-  if (subscriber->get_datareader_qos_from_profile(name, reader_qos) != ReturnCode_t::RETCODE_OK) {
+  if (context.subscriber->get_datareader_qos_from_profile(name, reader_qos) !=
+      ReturnCode_t::RETCODE_OK) {
     reader_qos = dds::DATAREADER_QOS_DEFAULT;
     apply(qos, reader_qos);
   }
   auto* reader =
-      dds_topic == nullptr ? nullptr : subscriber->create_datareader(dds_topic, reader_qos);
+      dds_topic == nullptr ? nullptr : context.subscriber->create_datareader(dds_topic, reader_qos);
   if (reader == nullptr) {
     throw StartupFault(fail(ErrorCode::io_failed,
-                            name_ + " cannot read " + name + " as " + type.name() +
+                            node.name_ + " cannot read " + name + " as " + type.name() +
                                 ": another type uses this topic here, or its profile is wrong"));
   }
   auto subscription = std::make_unique<Subscription>();
@@ -275,9 +236,15 @@ void Node::subscribe_raw(std::string_view topic, const MessageType& type, Qos qo
   subscription->type = type.impl().support;
   subscription->object = subscription->type.create_data();
   subscription->callback = std::move(callback);
-  auto& condition = reader->get_statuscondition();
-  condition.set_enabled_statuses(dds::StatusMask::data_available());
-  impl_->wait_set.attach_condition(condition);
+  reader->get_statuscondition().set_enabled_statuses(dds::StatusMask::data_available());
+  return subscription;
+}
+
+void Node::subscribe_raw(std::string_view topic, const MessageType& type, Qos qos,
+                         RawCallback callback) {
+  auto subscription =
+      impl_->open(*this, args_.resolve_topic(topic), type, qos, std::move(callback));
+  impl_->wait_set.attach_condition(subscription->reader->get_statuscondition());
   impl_->subscriptions.push_back(std::move(subscription));
 }
 
@@ -286,8 +253,9 @@ void Node::every(double period_s, std::function<void()> callback) {
     throw std::invalid_argument("Node::every: a period must be above 0 s");
   }
   // Not below 1 ns: a period of zero ticks would never let go of the loop.
-  const auto period = std::max(Steady::duration{1}, to_steady(period_s));
-  impl_->timers.push_back({period, Steady::now() + period, std::move(callback)});
+  const auto period_ns =
+      std::max(std::int64_t{1}, std::chrono::nanoseconds(to_steady(period_s)).count());
+  impl_->timers.push_back({period_ns, impl_->timer_now_ns() + period_ns, std::move(callback)});
 }
 
 void Node::spin() {
@@ -295,13 +263,15 @@ void Node::spin() {
 }
 
 void Node::spin_some(double timeout_s) {
-  impl_->wait(Steady::now() + to_steady(timeout_s));
+  if (impl_->time.takes_turns) return impl_->follow(*this, timeout_s);
+  if (!impl_->time.followers.empty()) return impl_->lead(*this);
+  impl_->wait(clamped(timeout_s));
   if (impl_->stopping) return;
   impl_->more = false;
   impl_->run_due_timers(*this);
   // By index: a callback may subscribe.
   for (std::size_t i = 0; i < impl_->subscriptions.size() && !impl_->stopping; ++i) {
-    if (impl_->take_some(*this, *impl_->subscriptions[i])) impl_->more = true;
+    if (impl_->take_some(*this, *impl_->subscriptions[i]) == kMostAtOnce) impl_->more = true;
   }
 }
 

@@ -28,9 +28,10 @@ void StageReporter::fault(const Error& error) {
   publish(0, error.code, error.message, {}, {});
 }
 
-void StageReporter::answered(std::uint64_t request_id, Timing timing, Counters counters) {
+void StageReporter::answered(std::uint64_t request_id, Timing timing, Counters counters,
+                             const std::string& note) {
   node_.log().debug("request {}: ok, {} us", request_id, timing.compute_ns / 1000);
-  publish(request_id, ErrorCode::ok, "", timing, counters);
+  publish(request_id, ErrorCode::ok, note, timing, counters);
 }
 
 void StageReporter::failed(std::uint64_t request_id, const Error& error, Timing timing) {

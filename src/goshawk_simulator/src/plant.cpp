@@ -87,4 +87,31 @@ Packed Plant::derivative(const Packed& x, const Vec4& rotor_command_rad_s,
   return dx;
 }
 
+namespace {
+
+class RigidBody : public PlantModel {
+ public:
+  explicit RigidBody(const VehicleParameters& parameters) : plant_(parameters) {}
+
+  void reset(const PlantState& state) override { state_ = state; }
+  void step(const Vec4& rotor_command_rad_s, const Vec3& wind_map, double dt_s) override {
+    state_ = plant_.step(state_, rotor_command_rad_s, wind_map, dt_s);
+  }
+  const PlantState& state() const override { return state_; }
+  Vec3 acceleration_map(const Vec3& wind_map) const override {
+    return plant_.acceleration_map(state_, wind_map);
+  }
+  const char* name() const override { return "rigid_body_rk4"; }
+
+ private:
+  Plant plant_;
+  PlantState state_;
+};
+
+}  // namespace
+
+std::unique_ptr<PlantModel> make_rigid_body(const VehicleParameters& parameters) {
+  return std::make_unique<RigidBody>(parameters);
+}
+
 }  // namespace goshawk::simulator

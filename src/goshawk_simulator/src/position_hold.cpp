@@ -35,6 +35,11 @@ void PositionHold::engage_at(const Vec3& position_map, double yaw_rad) {
   yaw_rad_ = yaw_rad;
 }
 
+void PositionHold::lower(double step_m, double floor_map_m) {
+  const double height = position_map_.z();
+  if (height > floor_map_m) position_map_.z() = std::max(floor_map_m, height - step_m);
+}
+
 ThrustAttitude PositionHold::step(const RigidBodyState& state) {
   if (braking_ && state.velocity_map.norm() < kAtRest_m_s) {
     braking_ = false;

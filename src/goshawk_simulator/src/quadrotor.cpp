@@ -39,17 +39,21 @@ Status check(const ThrustAttitude& command) {
 
 }  // namespace
 
-Result<Quadrotor> Quadrotor::create(const Config& config) {
+Result<Quadrotor> Quadrotor::create(const Config& config, const PlantFactory& make_plant) {
   if (auto status = simulator::check(config); !status) return status.error();
-  return Quadrotor(config);
+  return Quadrotor(config, make_plant);
 }
 
-Quadrotor::Quadrotor(const Config& config)
+Quadrotor::Quadrotor(const Config& config, const PlantFactory& make_plant)
     : config_(config),
-      plant_(config.vehicle),
+      plant_(make_plant(config.vehicle)),
+      mixer_(config.vehicle),
+      inertia_kg_m2_(config.vehicle.inertia_kg_m2()),
       wind_(wind_of(config), kStep_s),
+      sensor_(config.sensor, kStep_ns),
       hold_(config.vehicle, config.failsafe_tilt_rad),
-      command_timeout_ns_(std::llround(config.command_timeout_s * 1e9)) {
+      command_timeout_ns_(std::llround(config.command_timeout_s * 1e9)),
+      landing_ns_(command_timeout_ns_ + std::llround(config.failsafe_hold_s * 1e9)) {
   if (!reset(Vec3::Zero(), 0.0)) throw std::logic_error("a quadrotor cannot hover at the origin");
 }
 
@@ -59,14 +63,17 @@ Status Quadrotor::reset(const Vec3& position_map, double yaw_rad) {
                                               " with yaw " + std::to_string(yaw_rad) +
                                               " rad: position and yaw must be finite");
   }
-  state_ = PlantState{};
-  state_.body.position_map = position_map;
-  state_.body.q_map_base = Eigen::AngleAxisd(yaw_rad, Vec3::UnitZ());
-  state_.rotor_speed_rad_s =
-      plant_.rotor_speed_rad_s(Eigen::Vector4d::Constant(config_.vehicle.weight_n() / 4.0));
+  PlantState state;
+  state.body.position_map = position_map;
+  state.body.q_map_base = Eigen::AngleAxisd(yaw_rad, Vec3::UnitZ());
+  const auto& v = config_.vehicle;
+  state.rotor_speed_rad_s.setConstant(std::sqrt(v.weight_n() / 4.0 / v.thrust_coefficient_n_s2));
+  plant_->reset(state);
   wind_ = Wind(wind_of(config_), kStep_s);
+  sensor_.reset(state.body, time_ns_);
   hold_.engage_at(position_map, yaw_rad);
   control_ = Control::failsafe;
+  was_commanded_ = false;
   remainder_ns_ = 0;
   return success();
 }
@@ -77,7 +84,12 @@ Status Quadrotor::command(const ThrustAttitude& command) {
   command_.q_map_base.normalize();
   command_time_ns_ = time_ns_;
   control_ = Control::commanded;
+  was_commanded_ = true;
   return success();
+}
+
+Eigen::Vector4d Quadrotor::rotor_thrust_n() const {
+  return config_.vehicle.thrust_coefficient_n_s2 * plant_->state().rotor_speed_rad_s.cwiseAbs2();
 }
 
 Status Quadrotor::advance(double dt_s) {
@@ -91,20 +103,36 @@ Status Quadrotor::advance(double dt_s) {
 }
 
 void Quadrotor::step() {
-  const auto wrench =
-      attitude_control(config_.attitude, plant_.inertia_kg_m2(), state_.body, onboard_target());
-  const auto rotor_command = plant_.rotor_speed_rad_s(plant_.mixer().allocate(wrench));
-  state_ = plant_.step(state_, rotor_command, wind_.velocity_map(), kStep_s);
+  const auto wrench = attitude_control(config_.attitude, inertia_kg_m2_, state(), onboard_target());
+  const Eigen::Vector4d thrust_n = mixer_.allocate(wrench);
+  const Eigen::Vector4d rotor_command =
+      (thrust_n / config_.vehicle.thrust_coefficient_n_s2).cwiseMax(0.0).cwiseSqrt();
+  plant_->step(rotor_command, wind_.velocity_map(), kStep_s);
   wind_.step();
   time_ns_ += kStep_ns;
+  sensor_.record(state(), time_ns_);
 }
 
 ThrustAttitude Quadrotor::onboard_target() {
-  if (control_ == Control::commanded && time_ns_ - command_time_ns_ >= command_timeout_ns_) {
-    control_ = Control::failsafe;
-    hold_.engage(state_.body);
+  watch_commands();
+  if (control_ == Control::commanded) return command_;
+  if (control_ == Control::landing) {
+    hold_.lower(config_.land_speed_m_s * kStep_s, config_.land_height_m);
   }
-  return control_ == Control::commanded ? command_ : hold_.step(state_.body);
+  return hold_.step(state());
+}
+
+// Commands that stop coming: first it holds, then it lands.
+void Quadrotor::watch_commands() {
+  const std::int64_t silent_ns = time_ns_ - command_time_ns_;
+  if (control_ == Control::commanded && silent_ns >= command_timeout_ns_) {
+    control_ = Control::failsafe;
+    hold_.engage(state());
+  }
+  if (control_ == Control::failsafe && was_commanded_ && !hold_.braking() &&
+      silent_ns >= landing_ns_) {
+    control_ = Control::landing;
+  }
 }
 
 }  // namespace goshawk::simulator

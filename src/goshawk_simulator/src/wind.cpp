@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "goshawk/simulator/normal.hpp"
+
 namespace goshawk::simulator {
 
 Wind::Wind(const Parameters& parameters, double step_s)
@@ -10,25 +12,12 @@ Wind::Wind(const Parameters& parameters, double step_s)
       decay_(std::exp(-step_s / parameters.gust_time_s)),
       renewal_(std::sqrt(1.0 - decay_ * decay_)),
       random_(parameters.seed) {
-  if (deviation_m_s_ > 0.0) {
-    // One by one: the order in which arguments are evaluated is the compiler's choice.
-    for (int i = 0; i < 3; ++i) gust_map_[i] = deviation_m_s_ * normal();
-  }
+  if (deviation_m_s_ > 0.0) gust_map_ = normal_vector(random_, deviation_m_s_);
 }
 
 void Wind::step() {
   if (!(deviation_m_s_ > 0.0)) return;
-  for (int i = 0; i < 3; ++i) {
-    gust_map_[i] = decay_ * gust_map_[i] + renewal_ * deviation_m_s_ * normal();
-  }
-}
-
-// Sum of twelve uniform numbers: close to normal, bounded by six deviations, and made of additions
-// only, so that every machine draws the same.
-double Wind::normal() {
-  double sum = -6.0;
-  for (int i = 0; i < 12; ++i) sum += random_.uniform();
-  return sum;
+  gust_map_ = decay_ * gust_map_ + normal_vector(random_, renewal_ * deviation_m_s_);
 }
 
 }  // namespace goshawk::simulator

@@ -238,5 +238,28 @@ TEST(Quadrotor, HoldsItsPositionByItselfInAModerateWind) {
   EXPECT_LT(quadrotor.state().velocity_map.norm(), 1e-3);
 }
 
+TEST(Quadrotor, WithoutCommandsItHoldsThenLandsStraightDown) {
+  Config config;
+  config.failsafe_hold_s = 3.0;
+  auto quadrotor = make(config);
+  ASSERT_TRUE(quadrotor.reset({1, 2, 1.5}, 0.0));
+  advance(quadrotor, 20.0);
+  EXPECT_EQ(quadrotor.control(), Control::failsafe);  // nobody ever commanded: it only hovers
+  EXPECT_NEAR(quadrotor.state().position_map.z(), 1.5, 1e-6);
+  ASSERT_TRUE(quadrotor.command(hover(quadrotor)));
+  advance(quadrotor, 3.0);
+  EXPECT_EQ(quadrotor.control(), Control::failsafe);
+  EXPECT_NEAR(quadrotor.state().position_map.z(), 1.5, 0.01);
+  for (int i = 0; i < 100; ++i) {
+    advance(quadrotor, 0.1);
+    EXPECT_LT((quadrotor.state().position_map - Vec3(1, 2, 0)).head<2>().norm(), 0.01);
+    EXPECT_GT(quadrotor.state().velocity_map.z(), -config.land_speed_m_s - 0.02);
+  }
+  EXPECT_EQ(quadrotor.control(), Control::landing);
+  EXPECT_NEAR(quadrotor.state().position_map.z(), config.land_height_m, 0.01);
+  ASSERT_TRUE(quadrotor.command(hover(quadrotor)));  // whoever commands again, has it again
+  EXPECT_EQ(quadrotor.control(), Control::commanded);
+}
+
 }  // namespace
 }  // namespace goshawk::simulator

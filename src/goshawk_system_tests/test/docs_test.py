@@ -9,7 +9,7 @@ from harness import SOURCE, SystemTest, note
 
 PAGES = [SOURCE / "README.md", *sorted((SOURCE / "docs").glob("*.md"))]
 # What runs until it is stopped: it must live this long.
-ENDLESS = re.compile(r"goshawk (launch|run|topic (echo|hz|delay|bw))\b")
+ENDLESS = re.compile(r"goshawk (launch|run|view(?!.*--check)|topic (echo|hz|delay|bw))\b")
 LIVES_S = 3.0
 
 

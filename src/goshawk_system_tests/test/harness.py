@@ -26,7 +26,7 @@ SOURCE = pathlib.Path(os.environ.get("GOSHAWK_SOURCE") or
 PREFIX = pathlib.Path(os.environ.get("GOSHAWK_PREFIX") or SOURCE / "install")
 GOSHAWK = str(PREFIX / "bin" / "goshawk")
 STAGES = ["map_server", "path_search", "corridor_builder", "trajectory_optimizer", "navigator",
-          "tracker", "simulator"]
+          "tracker", "simulator", "flight_check"]
 MARGIN_M = 0.05          # map_server's default, for the tracking error
 BODY_RADIUS_M = 0.15     # map_server's default
 SKIPPED = 77

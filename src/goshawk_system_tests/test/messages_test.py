@@ -260,6 +260,14 @@ class Tools(StackTest):
                                  {"name", "type", "unit", "default", "range", "text"})
             self.assertTrue(answer["parameters"])
 
+    def test_doctor_finds_nothing_wrong_with_a_flight(self):
+        answer = self.ask("doctor")[0]
+        self.assertIs(answer["ok"], True, answer)
+        domain = [f for f in answer["findings"] if f["about"].startswith("domain ")]
+        for stage in STAGES:
+            self.assertIn(stage, domain[0]["message"])
+        self.assertEqual({f["level"] for f in answer["findings"]} & {"fault"}, set())
+
     def test_what_is_not_there(self):
         for arguments in (["topic", "echo", "nothing", "--once"], ["topic", "info", "nothing"],
                           ["topic", "hz", "nothing"]):

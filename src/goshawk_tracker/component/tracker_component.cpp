@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "goshawk/conversions/plan.hpp"
@@ -21,7 +23,47 @@ Tracker make_tracker(const Config& config) {
   return *std::move(tracker);
 }
 
-/// committed_trajectory, odom -> command, tracking_state
+/// What a flight's control steps cost, and how evenly they came.
+class StepStatistics {
+ public:
+  void begin(std::uint64_t id) { *this = StepStatistics{}, id_ = id; }
+
+  void add(std::int64_t compute_ns, std::int64_t now_ns) {
+    ++steps_;
+    compute_ns_ += compute_ns;
+    longest_ns_ = std::max(longest_ns_, compute_ns);
+    if (last_ns_ != 0) {
+      const double gap_ms = double(now_ns - last_ns_) * 1e-6;
+      gaps_ms_ += gap_ms;
+      squared_gaps_ms2_ += gap_ms * gap_ms;
+      longest_gap_ms_ = std::max(longest_gap_ms_, gap_ms);
+    }
+    last_ns_ = now_ns;
+  }
+
+  std::uint64_t id() const { return id_; }
+  std::int64_t mean_compute_ns() const { return steps_ > 0 ? compute_ns_ / steps_ : 0; }
+  double longest_compute_us() const { return double(longest_ns_) * 1e-3; }
+  double longest_gap_ms() const { return longest_gap_ms_; }
+  /// [ms] standard deviation of the time between steps
+  double jitter_ms() const {
+    const double gaps = double(std::max<std::int64_t>(1, steps_ - 1));
+    const double mean = gaps_ms_ / gaps;
+    return std::sqrt(std::max(0.0, squared_gaps_ms2_ / gaps - mean * mean));
+  }
+
+ private:
+  std::uint64_t id_ = 0;
+  std::int64_t steps_ = 0;
+  std::int64_t compute_ns_ = 0;
+  std::int64_t longest_ns_ = 0;
+  std::int64_t last_ns_ = 0;
+  double gaps_ms_ = 0.0;
+  double squared_gaps_ms2_ = 0.0;
+  double longest_gap_ms_ = 0.0;
+};
+
+/// committed_trajectory, odom, navigator_alive -> command, tracking_state
 class TrackerComponent : public Component {
  public:
   explicit TrackerComponent(Node& node)
@@ -37,6 +79,12 @@ class TrackerComponent : public Component {
     node.subscribe<nav_msgs::msg::Odometry>(
         "odom", Qos::best_effort(),
         [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) { on_odometry(m); });
+    node.subscribe<msg::NavigatorState>(
+        "navigator_alive", Qos::best_effort(),
+        [this](const msg::NavigatorState&, const MessageInfo& info) {
+          tracker_.heard_navigator(info.received_ns);
+        });
+    node.every(0.05, [this] { watch(); });
     reporter_.ready("tracks with " + config_.controller);
   }
 
@@ -67,6 +115,7 @@ class TrackerComponent : public Component {
         timed([&] { return tracker_.accept(std::move(committed), node_.now_ns()); });
     timing.compute_ns = compute_ns;
     if (!status) return reporter_.failed(id, status.error(), timing);
+    accepted_ = timing;
     reporter_.answered(id, timing);
   }
 
@@ -74,7 +123,10 @@ class TrackerComponent : public Component {
     const auto state = conversions::from_msg(m);
     if (!state) return complain(state.error());
     const std::int64_t stamp_ns = conversions::to_ns(m.header().stamp());
-    const auto command = tracker_.step(*state, stamp_ns, node_.now_ns());
+    const std::int64_t now_ns = node_.now_ns();
+    const auto [command, compute_ns] =
+        timed([&] { return tracker_.step(*state, stamp_ns, now_ns); });
+    count_step(compute_ns, now_ns);
     if (!command) return complain(command.error());
     conversions::fill_msg(*command, command_message_);
     command_message_.header(conversions::make_header(node_.now_ns()));
@@ -86,12 +138,46 @@ class TrackerComponent : public Component {
     publish_state(stamp_ns);
   }
 
-  void publish_state(std::int64_t stamp_ns) {
+  // A second answer to the request, once its trajectory is flown: how well, and at what cost.
+  void count_step(std::int64_t compute_ns, std::int64_t now_ns) {
     const TrackingStatus status = tracker_.status();
+    if (status.mode == Mode::follow && status.trajectory_id != steps_.id()) {
+      steps_.begin(status.trajectory_id);
+    }
+    if (steps_.id() == 0) return;
+    steps_.add(compute_ns, now_ns);
+    if (status.mode != Mode::hold || status.lost_trajectory_id != 0) return;
+    reporter_.answered(steps_.id(),
+                       {.wire_ns = accepted_.wire_ns, .compute_ns = steps_.mean_compute_ns()},
+                       {{"rms_error_m", status.rms_error_m},
+                        {"max_error_m", status.max_error_m},
+                        {"longest_step_us", steps_.longest_compute_us()},
+                        {"jitter_ms", steps_.jitter_ms()},
+                        {"longest_gap_ms", steps_.longest_gap_ms()}});
+    steps_.begin(0);
+  }
+
+  // What must be said when odometry or the navigator are silent.
+  void watch() {
+    tracker_.watch(node_.now_ns());
+    report_fault(tracker_.status());
+  }
+
+  // Once each; what the moment alone is to blame for, once a second.
+  void report_fault(const TrackingStatus& status) {
     if (status.fault.code != ErrorCode::ok && status.fault.message != reported_) {
-      reporter_.failed(status.trajectory_id, status.fault);
+      if (status.lost_trajectory_id != 0 || status.fault.code != ErrorCode::tracking_lost) {
+        reporter_.failed(status.lost_trajectory_id, status.fault);
+      } else {
+        complain(status.fault);
+      }
     }
     reported_ = status.fault.message;
+  }
+
+  void publish_state(std::int64_t stamp_ns) {
+    const TrackingStatus status = tracker_.status();
+    report_fault(status);
     msg::TrackingState m;
     m.header(conversions::make_header(stamp_ns));
     m.mode(std::string(to_string(status.mode)));
@@ -118,6 +204,8 @@ class TrackerComponent : public Component {
   Publisher<msg::TrackingState> states_;
   msg::ThrustAttitude command_message_;
   std::optional<msg::CommittedTrajectory> waiting_;
+  StepStatistics steps_;
+  Timing accepted_;       // of the newest trajectory that was
   std::string reported_;  // the newest fault's sentence
   std::int64_t complained_ns_ = 0;
 };

@@ -20,6 +20,8 @@ bool within_bound(std::int64_t time_ns) {
   return time_ns >= -kTimeBound_ns && time_ns <= kTimeBound_ns;
 }
 
+const Error kNoFault{ErrorCode::ok, ""};
+
 std::string number(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.3g", value);
@@ -38,6 +40,8 @@ std::string_view to_string(Mode mode) {
       return "follow";
     case Mode::brake:
       return "brake";
+    case Mode::land:
+      return "land";
   }
   throw std::logic_error("to_string() of no Mode");
 }
@@ -107,13 +111,13 @@ void Tracker::brake(std::int64_t now_ns) {
 Result<ThrustAttitude> Tracker::step(const RigidBodyState& state, std::int64_t stamp_ns,
                                      std::int64_t now_ns) {
   if (auto status = check_odometry(state, stamp_ns, now_ns); !status) {
-    if (!lost_) fault_ = status.error();
+    refused_ = status.error();
     return status.error();
   }
-  if (!lost_) fault_ = Error{ErrorCode::ok, ""};
-  take_in(state, stamp_ns);
+  take_in(state, stamp_ns, now_ns);
   switch_trajectories(now_ns);
   watch_error(now_ns);
+  watch_navigator(now_ns);
 
   const double yaw_rate = turn(now_ns);
   now_ns_ = now_ns;
@@ -153,26 +157,26 @@ Status Tracker::check_odometry(const RigidBodyState& state, std::int64_t stamp_n
   return success();
 }
 
-// The state, and what a first one, a restarted clock or a jump mean for the reference.
-void Tracker::take_in(const RigidBodyState& state, std::int64_t stamp_ns) {
+// The state, and what a first one, a restarted clock, a gap or a jump mean for the reference.
+void Tracker::take_in(const RigidBodyState& state, std::int64_t stamp_ns, std::int64_t now_ns) {
   const bool restarted = has_state_ && stamp_ns < stamp_ns_;
   if (!has_state_ || restarted) {
     hold_here(state);
     first_yaw_rad_ = yaw_rad_ = yaw_of(state.q_map_base);
     now_ns_ = stamp_ns;
     stamp_ns_ = stamp_ns;
-    lost_ = false;
-    fault_ = Error{ErrorCode::ok, ""};
+    lost_ = refused_ = deserted_ = kNoFault;
+    heard_ns_.reset();
   } else {
+    watch_odometry(stamp_ns);  // a gap behind us
+    refused_ = kNoFault;
     const double dt = seconds(stamp_ns_, stamp_ns);
     const double speed = std::max(state.velocity_map.norm(), state_.velocity_map.norm());
     const double moved = (state.position_map - state_.position_map).norm();
     if (moved > speed * dt + config_.max_jump_m) {
+      lose(now_ns, "odometry jumped by " + number(moved) + " m; holding where it says to be now");
       // The vehicle is where it was, but its coordinates are not: no path in them can be trusted.
       hold_here(state);
-      lost_ = true;
-      fault_ = fail(ErrorCode::tracking_lost,
-                    "odometry jumped by " + number(moved) + " m; holding where it says to be now");
     }
   }
   since_last_s_ = seconds(stamp_ns_, stamp_ns);
@@ -186,6 +190,7 @@ void Tracker::hold_here(const RigidBodyState& state) {
   reference_ = Reference::hold(state.position_map);
   queue_.clear();
   controller_.reset();
+  landing_ = false;
   squared_error_m2_ = max_error_m_ = 0.0;
   samples_ = 0;
 }
@@ -194,8 +199,8 @@ void Tracker::switch_trajectories(std::int64_t now_ns) {
   while (!queue_.empty() && queue_.front().start_time_ns <= now_ns) {
     reference_ = Reference::follow(std::move(queue_.front()));
     queue_.erase(queue_.begin());
-    lost_ = false;
-    fault_ = Error{ErrorCode::ok, ""};
+    lost_ = kNoFault;
+    landing_ = false;
     squared_error_m2_ = max_error_m_ = 0.0;
     samples_ = 0;
   }
@@ -206,13 +211,85 @@ void Tracker::watch_error(std::int64_t now_ns) {
   squared_error_m2_ += error_m_ * error_m_;
   max_error_m_ = std::max(max_error_m_, error_m_);
   ++samples_;
-  if (lost_ || error_m_ <= config_.max_error_m) return;
-  lost_ = true;
-  fault_ =
-      fail(ErrorCode::tracking_lost,
-           "the vehicle is " + number(error_m_) + " m from where it should be, more than " +
-               number(config_.max_error_m) + " m: stopping on the path; plan again from there");
-  brake(now_ns);
+  if (lost_.code != ErrorCode::ok || error_m_ <= config_.error_allowance_m) return;
+  lose(now_ns, "the vehicle is " + number(error_m_) +
+                   " m from where it should be, more than the allowance of " +
+                   number(config_.error_allowance_m) +
+                   " m: stopping on the path; plan again from there");
+}
+
+// Whatever is lost, the reference comes to rest on its path: that much of it is known to be safe.
+// At rest nothing is lost for long: the fault lasts as long as its cause.
+void Tracker::lose(std::int64_t now_ns, const std::string& why) {
+  const Error error = fail(ErrorCode::tracking_lost, why);
+  if (reference_.at_rest(now_ns) && queue_.empty()) {
+    refused_ = error;
+    return;
+  }
+  lost_ = error;
+  lost_id_ = reference_.at_rest(now_ns) ? queue_.front().id : followed_id();
+  if (!landing_) brake(now_ns);
+}
+
+std::uint64_t Tracker::followed_id() const {
+  return reference_.has_trajectory() ? reference_.committed().id : 0;
+}
+
+void Tracker::watch(std::int64_t now_ns) {
+  if (!within_bound(now_ns) || !has_state_) return;
+  watch_odometry(now_ns);
+  watch_navigator(now_ns);
+}
+
+void Tracker::watch_odometry(std::int64_t now_ns) {
+  const double age_s = seconds(stamp_ns_, now_ns);
+  if (age_s <= config_.odometry_timeout_s || lost_.code != ErrorCode::ok) return;
+  lose(now_ns, "no odometry for " + number(age_s) + " s, more than " +
+                   number(config_.odometry_timeout_s) +
+                   " s: no command goes out, the vehicle holds by itself; is its source alive?");
+}
+
+void Tracker::heard_navigator(std::int64_t now_ns) {
+  if (!within_bound(now_ns)) return;
+  heard_ns_ = now_ns;
+  deserted_ = kNoFault;
+  if (!landing_) return;
+  brake(now_ns);  // it may be needed where it is
+  landing_ = false;
+}
+
+void Tracker::watch_navigator(std::int64_t now_ns) {
+  const bool rests = reference_.at_rest(now_ns) && queue_.empty();
+  if (!rests) rest_since_ns_.reset();
+  if (rests && !rest_since_ns_) rest_since_ns_ = now_ns;
+  if (!heard_ns_ || seconds(*heard_ns_, now_ns) <= config_.navigator_timeout_s) return;
+  if (deserted_.code == ErrorCode::ok) {
+    deserted_ = fail(ErrorCode::stage_silent,
+                     "the navigator is silent for " + number(config_.navigator_timeout_s) +
+                         " s: what is committed is flown to its end and held there; landing " +
+                         number(config_.land_after_s) + " s later");
+  }
+  const std::int64_t since_ns = rest_since_ns_ ? std::max(*rest_since_ns_, *heard_ns_) : now_ns;
+  if (!landing_ && rests && seconds(since_ns, now_ns) >= config_.land_after_s) land(now_ns);
+}
+
+// Straight down, at rest at both ends: a quintic's top speed is 15/8 of its mean.
+void Tracker::land(std::int64_t now_ns) {
+  landing_ = true;
+  const FlatState from{.position = reference_.at(now_ns).position};
+  FlatState to = from;
+  to.position.z() = config_.land_height_m;
+  const double height_m = from.position.z() - to.position.z();
+  deserted_ = fail(ErrorCode::stage_silent,
+                   "the navigator is lost: landing below " + to_text(from.position) + " m");
+  if (height_m < 1e-3) return;
+  CommittedTrajectory down;
+  down.id = followed_id();
+  down.trajectory.pieces = {
+      BezierPiece::between(from, to, 15.0 / 8.0 * height_m / config_.land_speed_m_s)};
+  down.start_time_ns = now_ns;
+  down.yaw_rad = yaw_rad_;
+  reference_ = Reference::follow(std::move(down));
 }
 
 double Tracker::wanted_yaw() const {
@@ -240,11 +317,16 @@ FlatState Tracker::reference_at(std::int64_t time_ns) const {
 TrackingStatus Tracker::status() const {
   TrackingStatus s;
   if (!has_state_) return s;
-  s.mode = reference_.at_rest(now_ns_) ? Mode::hold
-           : reference_.braking()      ? Mode::brake
-                                       : Mode::follow;
-  s.fault = fault_;
-  if (reference_.has_trajectory()) s.trajectory_id = reference_.committed().id;
+  s.mode = landing_                      ? Mode::land
+           : reference_.at_rest(now_ns_) ? Mode::hold
+           : reference_.braking()        ? Mode::brake
+                                         : Mode::follow;
+  for (const Error* fault : {&deserted_, &refused_, &lost_}) {
+    if (fault->code != ErrorCode::ok) s.fault = *fault;
+  }
+  if (landing_) s.fault = deserted_;
+  if (lost_.code != ErrorCode::ok) s.lost_trajectory_id = lost_id_;
+  s.trajectory_id = followed_id();
   s.progress_s = reference_.progress_s(now_ns_);
   s.duration_s = reference_.duration_s();
   s.queued = int(queue_.size());

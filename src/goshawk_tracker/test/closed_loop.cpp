@@ -7,10 +7,10 @@
 
 namespace goshawk::tracker {
 ClosedLoop::ClosedLoop(const Config& tracker_config, const simulator::Config& vehicle_config,
-                       Link link)
+                       Link with_link)
     : vehicle(simulator::Quadrotor::create(vehicle_config).value()),
       tracker(Tracker::create(tracker_config).value()),
-      link_(std::move(link)) {}
+      link(std::move(with_link)) {}
 
 void ClosedLoop::run_until(std::int64_t end_ns, const std::function<void()>& each) {
   while (vehicle.time_ns() < end_ns) {
@@ -24,13 +24,17 @@ void ClosedLoop::run_until(std::int64_t end_ns, const std::function<void()>& eac
 void ClosedLoop::exchange() {
   const std::int64_t now = vehicle.time_ns();
   if (now >= next_odometry_ns_) {
-    next_odometry_ns_ = now + (link_.gap_ns ? link_.gap_ns() : link_.period_ns);
+    next_odometry_ns_ = now + (link.gap_ns ? link.gap_ns() : link.period_ns);
+    if (watched) tracker.watch(now);
     if (connected) {
-      const auto command = tracker.step(vehicle.state(), now, now + link_.odometry_delay_ns);
+      auto measured = vehicle.measure();
+      if (link.spoil) link.spoil(measured.state);
+      const auto command =
+          tracker.step(measured.state, measured.time_ns, now + link.odometry_delay_ns);
       if (!command) {
         last_error = command.error();
-      } else if (!link_.drop || !link_.drop()) {
-        arrivals_.push_back({now + link_.odometry_delay_ns + link_.command_delay_ns, *command});
+      } else if (!link.drop || !link.drop()) {
+        arrivals_.push_back({now + link.odometry_delay_ns + link.command_delay_ns, *command});
       }
     }
   }

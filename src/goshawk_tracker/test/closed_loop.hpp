@@ -14,8 +14,9 @@ struct Link {
   std::int64_t period_ns = 4'000'000;    // of odometry
   std::function<std::int64_t()> gap_ns;  // in place of the period, where set
   std::int64_t odometry_delay_ns = 0;
-  std::int64_t command_delay_ns = 4'000'000;  // one step
-  std::function<bool()> drop;                 // loses the command, where set
+  std::int64_t command_delay_ns = 4'000'000;   // one step
+  std::function<bool()> drop;                  // loses the command, where set
+  std::function<void(RigidBodyState&)> spoil;  // changes what odometry says, where set
 };
 
 /// Tracker and simulated vehicle, joined by a link with delays. Time in whole milliseconds.
@@ -39,6 +40,8 @@ class ClosedLoop {
   Error last_error{ErrorCode::ok, ""};
   int failsafe_ms = 0;
   bool connected = true;  // odometry is taken and commands are sent
+  bool watched = true;    // the tracker is told of the time, odometry or not
+  Link link;
 
  private:
   struct Arrival {
@@ -47,7 +50,6 @@ class ClosedLoop {
   };
   void exchange();
 
-  Link link_;
   std::int64_t next_odometry_ns_ = 0;
   std::deque<Arrival> arrivals_;
 };

@@ -59,14 +59,138 @@ TEST(FailuresInFlight, ATrackerThatComesBackLateStopsOnThePathAndReportsIt) {
   EXPECT_EQ(loop.vehicle.control(), simulator::Control::commanded);
 }
 
-TEST(FailuresInFlight, ATrackerThatComesBackAtOnceFliesOn) {
+TEST(FailuresInFlight, AGapInOdometryShorterThanItsTimeoutIsFlownThrough) {
   Flight flight;
   auto& loop = flight.loop;
   loop.connected = false;
-  loop.run_until(loop.vehicle.time_ns() + 200'000'000);
+  loop.run_until(loop.vehicle.time_ns() + 80'000'000);
   loop.connected = true;
   loop.run_until(12 * kSecond);
   EXPECT_EQ(loop.tracker.status().fault.code, ErrorCode::ok);
+  EXPECT_LT((loop.vehicle.state().position_map - Vec3(0, 10, 1)).norm(), 0.01);
+}
+
+// Lost odometry: a code at once, though nothing comes in; the vehicle holds, and lands.
+TEST(FailuresInFlight, WithoutOdometryTheTrackerSaysSoAndTheVehicleHoldsThenLands) {
+  Flight flight;
+  auto& loop = flight.loop;
+  loop.connected = false;
+  loop.run_until(loop.vehicle.time_ns() + 150'000'000);
+  auto status = loop.tracker.status();
+  EXPECT_EQ(status.fault.code, ErrorCode::tracking_lost);
+  EXPECT_NE(status.fault.message.find("no odometry"), std::string::npos);
+  EXPECT_EQ(status.lost_trajectory_id, 1U);
+  EXPECT_EQ(status.mode, Mode::brake);
+  loop.run_until(loop.vehicle.time_ns() + 5 * kSecond);
+  const Vec3 held = loop.vehicle.state().position_map;
+  EXPECT_EQ(loop.vehicle.control(), simulator::Control::failsafe);
+  EXPECT_LT(loop.vehicle.state().velocity_map.norm(), 0.01);
+  EXPECT_NEAR(held.z(), 1.0, 0.05);
+  loop.run_until(loop.vehicle.time_ns() + 12 * kSecond);
+  EXPECT_EQ(loop.vehicle.control(), simulator::Control::landing);
+  const Vec3 landed = loop.vehicle.state().position_map;
+  EXPECT_NEAR(landed.z(), 0.1, 0.02);
+  EXPECT_LT((landed - held).head<2>().norm(), 0.02);
+}
+
+TEST(FailuresInFlight, OdometryThatIsNotANumberIsLostOdometry) {
+  Flight flight;
+  auto& loop = flight.loop;
+  loop.link.spoil = [](RigidBodyState& state) { state.velocity_map.y() = std::nan(""); };
+  loop.run_until(loop.vehicle.time_ns() + kSecond, [&] {
+    EXPECT_TRUE(loop.vehicle.state().is_finite());
+    EXPECT_LT(std::abs(loop.vehicle.state().position_map.x()), 0.02);
+  });
+  EXPECT_EQ(loop.last_error.code, ErrorCode::invalid_input);
+  EXPECT_EQ(loop.tracker.status().fault.code, ErrorCode::tracking_lost);
+  EXPECT_EQ(loop.vehicle.control(), simulator::Control::failsafe);
+}
+
+// The coordinates shift by a metre while the vehicle flies at 2 m/s: it stops within what braking
+// takes, on the line it was on, and does not chase the shift.
+TEST(FailuresInFlight, OdometryThatJumpsStopsTheVehicleWhereItIs) {
+  Flight flight;
+  auto& loop = flight.loop;
+  const Vec3 here = loop.vehicle.state().position_map;
+  loop.link.spoil = [](RigidBodyState& state) { state.position_map += Vec3(1, 0, 0.5); };
+  loop.run_until(loop.vehicle.time_ns() + 4 * kSecond, [&] {
+    const Vec3 p = loop.vehicle.state().position_map - here;
+    EXPECT_LT(p.y(), 0.8);
+    EXPECT_LT(std::hypot(p.x(), p.z()), 0.1);
+  });
+  const auto status = loop.tracker.status();
+  EXPECT_EQ(status.fault.code, ErrorCode::tracking_lost);
+  EXPECT_NE(status.fault.message.find("jumped"), std::string::npos);
+  EXPECT_EQ(status.lost_trajectory_id, 1U);
+  EXPECT_EQ(status.mode, Mode::hold);
+  EXPECT_LT(loop.vehicle.state().velocity_map.norm(), 0.01);
+}
+
+// Gales that no allowance covers: the reference stops on the certified line, and the vehicle stays
+// beside it. The navigator is told which trajectory is lost.
+TEST(FailuresInFlight, AnErrorBeyondTheAllowanceIsReportedAndBrakesOnThePath) {
+  simulator::Config vehicle;
+  vehicle.gust_deviation_m_s = 3.0;
+  vehicle.gust_time_s = 0.7;
+  int lost = 0;
+  for (int seed = 1; seed <= 20; ++seed) {
+    vehicle.gust_seed = seed;
+    ClosedLoop loop(Config{}, vehicle);
+    ASSERT_TRUE(loop.vehicle.reset({0, 0, 1}, 0.0));
+    loop.run_until(kSecond - 20'000'000);
+    ASSERT_TRUE(loop.tracker.accept(ten_metres(), loop.vehicle.time_ns()));
+    double worst_m = 0.0;
+    loop.run_until(12 * kSecond, [&] {
+      const auto status = loop.tracker.status();
+      if (status.trajectory_id != 0) {
+        EXPECT_NEAR(status.reference.position.x(), 0.0, 1e-9);
+        EXPECT_NEAR(status.reference.position.z(), 1.0, 1e-9);
+      }
+      if (!status.queued) worst_m = std::max(worst_m, status.error_m);
+    });
+    const auto status = loop.tracker.status();
+    if (status.lost_trajectory_id == 0) continue;
+    ++lost;
+    EXPECT_EQ(status.lost_trajectory_id, 1U);
+    EXPECT_EQ(status.mode, Mode::hold);
+    EXPECT_GT(worst_m, 0.05);
+    EXPECT_LT(worst_m, 0.20);
+  }
+  EXPECT_GE(lost, 5);
+}
+
+// Lost setpoints: what is committed is flown, then held, then landed from; each with its code.
+TEST(FailuresInFlight, WithoutTheNavigatorTheEndIsHeldThenLandedFrom) {
+  Flight flight;
+  auto& loop = flight.loop;
+  loop.tracker.heard_navigator(loop.vehicle.time_ns());
+  loop.run_until(loop.vehicle.time_ns() + 2'100'000'000);
+  EXPECT_EQ(loop.tracker.status().mode, Mode::follow);
+  EXPECT_EQ(loop.tracker.status().fault.code, ErrorCode::stage_silent);
+  loop.run_until(12 * kSecond);
+  EXPECT_EQ(loop.tracker.status().mode, Mode::hold);
+  EXPECT_LT((loop.vehicle.state().position_map - Vec3(0, 10, 1)).norm(), 0.01);
+  loop.run_until(22 * kSecond);
+  EXPECT_EQ(loop.tracker.status().mode, Mode::land);
+  EXPECT_NE(loop.tracker.status().fault.message.find("landing"), std::string::npos);
+  // Back in the middle of the descent: it stops there, and takes a new trajectory.
+  loop.tracker.heard_navigator(loop.vehicle.time_ns());
+  loop.run_until(25 * kSecond);
+  const Vec3 here = loop.vehicle.state().position_map;
+  EXPECT_EQ(loop.tracker.status().mode, Mode::hold);
+  EXPECT_EQ(loop.tracker.status().fault.code, ErrorCode::stage_silent);  // silent again
+  EXPECT_GT(here.z(), 0.2);
+  EXPECT_LT(here.z(), 0.9);
+  loop.run_until(45 * kSecond);
+  EXPECT_EQ(loop.tracker.status().mode, Mode::land);
+  EXPECT_LT((loop.vehicle.state().position_map - Vec3(0, 10, 0.1)).norm(), 0.02);
+}
+
+TEST(FailuresInFlight, ATrackerThatNeverHeardANavigatorNeverLands) {
+  Flight flight;
+  auto& loop = flight.loop;
+  loop.run_until(60 * kSecond);
+  EXPECT_EQ(loop.tracker.status().mode, Mode::hold);
   EXPECT_LT((loop.vehicle.state().position_map - Vec3(0, 10, 1)).norm(), 0.01);
 }
 

@@ -2,6 +2,7 @@
 #include "goshawk/runtime/stage.hpp"
 #include "goshawk/trajectory_optimizer/config.hpp"
 #include "goshawk/trajectory_optimizer/trajectory_optimizer.hpp"
+#include "goshawk/trajectory_optimizer/yaw.hpp"
 
 namespace goshawk::trajectory_optimizer {
 namespace {
@@ -20,7 +21,8 @@ class TrajectoryOptimizerComponent : public Component {
  public:
   explicit TrajectoryOptimizerComponent(Node& node)
       : node_(node),
-        optimizer_(make_optimizer(node.parameters<Config>())),
+        config_(node.parameters<Config>()),
+        optimizer_(make_optimizer(config_)),
         reporter_(node, std::string(optimizer_.implementation())),
         publisher_(node.advertise<msg::BezierTrajectory>("trajectory", Qos::reliable_last())) {
     node.subscribe<msg::Corridor>(
@@ -32,32 +34,45 @@ class TrajectoryOptimizerComponent : public Component {
  private:
   void on_corridor(const msg::Corridor& m, const MessageInfo& info) {
     Timing timing{.wire_ns = wire_time_ns(m.header(), info)};
-    const auto request = open_request(m.request(), node_.now_ns(), reporter_, timing);
+    auto request = open_request(m.request(), node_.now_ns(), reporter_, timing);
     if (!request) return;
     auto [solution, compute_ns] = timed([&]() -> Result<Solution> {
       const auto corridor = conversions::from_msg(m);
       if (!corridor) return corridor.error();
-      return optimizer_.optimise(*corridor, request->start, request->goal, request->limits);
+      // The search may have moved the ends: the corridor knows where they are.
+      request->start.position = corridor->waypoints_map.front();
+      request->goal.position = corridor->waypoints_map.back();
+      const Query query{.duration_s = request->duration_s, .out_of_time = [&] {
+                          return !conversions::check_deadline(*request, node_.now_ns());
+                        }};
+      return optimizer_.optimise(*corridor, request->start, request->goal, request->limits, query);
     });
     timing.compute_ns = compute_ns;
     if (!solution) return reporter_.failed(request->id, solution.error(), timing);
-    publish(m, *solution, compute_ns);
+    publish(m, *request, *solution, compute_ns);
     reporter_.answered(request->id, timing,
                        {{"pieces", double(solution->trajectory.pieces.size())},
                         {"iterations", double(solution->iterations)},
                         {"duration_s", solution->trajectory.duration_s()},
                         {"length_m", solution->trajectory.length_m()},
-                        {"jerk_cost", solution->jerk_cost}});
+                        {"jerk_cost", solution->jerk_cost},
+                        {"start_excess_s", solution->certificate.start_excess_s}});
   }
 
-  void publish(const msg::Corridor& corridor, const Solution& solution, std::int64_t compute_ns) {
+  void publish(const msg::Corridor& corridor, const conversions::PlanRequest& request,
+               const Solution& solution, std::int64_t compute_ns) {
     msg::BezierTrajectory m;
     m.request(corridor.request());
+    m.request().start().position(conversions::to_msg(request.start).position());
+    m.request().goal().position(conversions::to_msg(request.goal).position());
     m.implementation(std::string(optimizer_.implementation()));
     m.map_version(corridor.map_version());
     m.pieces(conversions::to_msg(solution.trajectory));
     m.polytopes(corridor.polytopes());
     m.certificate(conversions::to_msg(solution.certificate));
+    if (auto status = add_yaw(request, solution.trajectory, m); !status) {
+      return reporter_.failed(request.id, status.error());
+    }
     m.compute_ns(compute_ns);
     m.header(conversions::make_header(node_.now_ns()));
     if (auto status = publisher_.publish(m); !status) {
@@ -65,7 +80,28 @@ class TrajectoryOptimizerComponent : public Component {
     }
   }
 
+  // Begins where the yaw of the last trajectory ended.
+  Status add_yaw(const conversions::PlanRequest& request, const Trajectory& trajectory,
+                 msg::BezierTrajectory& m) {
+    if (config_.yaw == "none") return success();
+    const auto curve = plan_yaw(
+        trajectory, {.mode = config_.yaw == "fixed"          ? YawMode::fixed
+                             : config_.yaw == "along_motion" ? YawMode::along_motion
+                                                             : YawMode::towards_point,
+                     .start_rad = yaw_rad_,
+                     .fixed_rad = request.goal_yaw_rad,
+                     .point_map = Vec3(config_.yaw_point_x_m, config_.yaw_point_y_m, 0.0),
+                     .rate_max_rad_s = config_.yaw_rate_max_rad_s});
+    if (!curve) return curve.error();
+    yaw_rad_ = curve->yaw_rad(curve->duration_s());
+    m.yaw_step(curve->step_s);
+    m.yaw_points(curve->points_rad);
+    return success();
+  }
+
   Node& node_;
+  const Config config_;
+  double yaw_rad_ = 0.0;  // [rad] where the last trajectory ends
   TrajectoryOptimizer optimizer_;
   StageReporter reporter_;
   Publisher<msg::BezierTrajectory> publisher_;

@@ -6,28 +6,23 @@
 #include <cstdio>
 #include <limits>
 
+#include "goshawk/trajectory_optimizer/rivals.hpp"
+#include "usage.hpp"
+
 namespace goshawk::trajectory_optimizer {
 namespace {
 
 constexpr double kAllFaces = std::numeric_limits<double>::infinity();
-constexpr double kCoarseGap = 1e-2;  // relative, of all passes but the last
+// Of the first reach: how far faces matter once the shape is nearly known.
+constexpr double kNarrow = 0.1;
+// Exponent of a piece's use of its limits: above 1, as what one piece gives up others need.
+constexpr double kBalance = 1.8;
+constexpr double kCoarseGap = 0.1;  // relative, of all passes but the last
 constexpr double kFineGap = 1e-3;
+// The squared duration beside the mean squared jerk, each in units of the trapezoid's: enough for
+// nearly the least time, not so much that the jerk is left to chance.
+constexpr double kTimeWeight = 100.0;
 constexpr std::array<double, 5> kEndSlack{2e-2, 2e-3, 2e-5, 0.0, 0.0};  // pass by pass
-
-// The largest speed and acceleration of a spline's hull, in units of the limits, piece by piece.
-struct Usage {
-  double speed = 0.0;
-  double acceleration = 0.0;
-};
-
-Usage usage(const BezierPiece& piece, const Limits& limits) {
-  const auto largest = [&](const auto& points) {
-    return limits.norm == LimitNorm::euclidean ? points.colwise().norm().maxCoeff()
-                                               : points.cwiseAbs().maxCoeff();
-  };
-  return {largest(piece.velocity_points()) / limits.v_max_m_s,
-          largest(piece.acceleration_points()) / limits.a_max_m_s2};
-}
 
 void stretch_durations(Plan& plan, double factor) {
   for (double& duration : plan.durations_s) duration *= factor;
@@ -36,9 +31,23 @@ void stretch_durations(Plan& plan, double factor) {
 }  // namespace
 
 Result<Solution> TrajectoryOptimizer::Method::answer(const Request& request) {
-  best_.reset();
   iterations_ = solves_ = 0;
+  auto soon = soonest_flight(request);
+  if (soon) soon = within_vehicle(request, *std::move(soon));
+  if (!soon) return soon;
+  if (request.duration_s > 0.0) return arrive(request, request.duration_s, *std::move(soon));
+  if (config_.extra_time > 0.0) {
+    const double duration_s = (1.0 + config_.extra_time) * soon->trajectory.duration_s();
+    return arrive(request, duration_s, *std::move(soon));
+  }
+  return soon;
+}
+
+Result<Solution> TrajectoryOptimizer::Method::soonest_flight(const Request& request) {
+  best_.reset();
+  last_ = {};
   if (config_.method == "thesis") return thesis(request);
+  if (config_.method == "minimum_snap" || config_.method == "polynomial") return rival(request);
   return config_.method == "fixed" ? fixed(request) : scale(request);
 }
 
@@ -46,63 +55,83 @@ Result<Solution> TrajectoryOptimizer::Method::scale(const Request& request) {
   Plan plan = cut_trapezoid(request, config_);
   if (plan.stays) return fixed(request);
   if (request.rests()) {
-    refine(request, plan);
-  } else {
-    constexpr std::array<Lead, 11> kLeads{{{0.25, 1.0},
-                                           {0.1, 0.5},
-                                           {0.1, 1.6},
-                                           {0.02, 1.0},
-                                           {0.05, 0.25},
-                                           {0.05, 0.7},
-                                           {0.03, 0.12},
-                                           {0.02, 0.05},
-                                           {0.05, 3.0},
-                                           {0.01, 0.02},
-                                           {0.01, 1.0}}};
-    for (const Lead& lead : kLeads) {
-      plan = cut_trapezoid(request, config_, lead);
-      refine(request, plan);
-      if (best_) break;
+    refine(request, plan, config_.refinement_passes);
+    if (!best_ && config_.refinement_passes > 0 && !stopped()) {
+      plan = cut_trapezoid(request, config_);  // durations too uneven to compute with
+      refine(request, plan, 0);
     }
-    if (!best_) try_longer(request, plan);
+  } else {
+    scale_moving(request, plan);
+    if (!best_ && !stopped()) try_longer(request, plan);
   }
   if (best_) return finish();
   return failure(request);
 }
 
+void TrajectoryOptimizer::Method::scale_moving(const Request& request, Plan& plan) {
+  constexpr std::array<Lead, 11> kLeads{{{0.25, 1.0},
+                                         {0.1, 0.5},
+                                         {0.1, 1.6},
+                                         {0.02, 1.0},
+                                         {0.05, 0.25},
+                                         {0.05, 0.7},
+                                         {0.03, 0.12},
+                                         {0.02, 0.05},
+                                         {0.05, 3.0},
+                                         {0.01, 0.02},
+                                         {0.01, 1.0}}};
+  // A start above a limit: as little time above it as there is an answer for.
+  constexpr std::array<double, 4> kBraking{0.4, 0.6, 0.8, 0.99};
+  const bool above = StartAllowance::of(request.start, request.limits).until_s > 0.0;
+  for (const double braking : kBraking) {
+    for (Lead lead : kLeads) {
+      lead.braking = braking;
+      plan = cut_trapezoid(request, config_, lead);
+      refine(request, plan, config_.refinement_passes);
+      if (best_ || stopped()) return;
+    }
+    if (!above) return;
+  }
+}
+
 // Design A with refinement B of docs/trajectories.md: solve, balance the pieces, solve again.
-void TrajectoryOptimizer::Method::refine(const Request& request, Plan& plan) {
+void TrajectoryOptimizer::Method::refine(const Request& request, Plan& plan, int refinements) {
   const bool rests = request.rests();
-  const int passes = 1 + config_.refinement_passes + (rests ? 0 : 4);
-  double reach_m = corner_reach_m(plan, request.limits);
+  const int passes = 1 + refinements + (rests ? 0 : 4);
+  const double first_reach_m = corner_reach_m(plan, request.limits);
+  double reach_m = first_reach_m;
   for (int pass = 0; pass < passes; ++pass) {
     const double slack = rests ? 0.0 : kEndSlack[std::min<std::size_t>(std::size_t(pass), 4)];
-    const double gap = pass < config_.refinement_passes ? kCoarseGap : kFineGap;
+    const bool coarse = pass < refinements;
     double kappa = 1.0;
-    if (!solve_scale(request, plan, reach_m, gap, slack, kappa)) return;
+    if (!solve_scale(request, plan, reach_m, coarse, slack, kappa)) return;
+    if (coarse) {
+      balance(request, plan);
+      reach_m = kNarrow * first_reach_m;
+      continue;
+    }
     consider(request, plan);
-    if (outside_ && reach_m < kAllFaces) {  // through a face that was left out
-      reach_m = kAllFaces;
-      if (!solve_scale(request, plan, reach_m, gap, slack, kappa)) return;
+    // Through a face that was left out: look farther, and then at all of them.
+    for (const double farther : {first_reach_m, kAllFaces}) {
+      if (!outside_ || reach_m >= farther) continue;
+      reach_m = farther;
+      if (!solve_scale(request, plan, reach_m, coarse, slack, kappa)) return;
       consider(request, plan);
     }
     const bool certified = best_.has_value();
     // A moving end was linearised at kappa = 1: done when it has come to be so.
     const bool settled = certified && (rests || std::abs(kappa - 1.0) < 1e-3);
-    if (pass >= config_.refinement_passes && settled) return;
-    if (pass < config_.refinement_passes) balance(request, plan);
+    if (settled) return;
   }
 }
 
 // Pieces that stay below both limits get less time.
 void TrajectoryOptimizer::Method::balance(const Request& request, Plan& plan) const {
-  constexpr double kExponent = 1.0;
   for (std::size_t k = 0; k < plan.durations_s.size(); ++k) {
     const auto piece =
         BezierPiece::between(plan.joints[k], plan.joints[k + 1], plan.durations_s[k]);
-    const Usage used = usage(piece, request.limits);
-    const double u = std::max(used.speed, std::sqrt(used.acceleration));
-    plan.durations_s[k] *= std::pow(std::clamp(u, 0.3, 1.0), kExponent);
+    const double u = time_factor(usage_of(piece, request.limits, plan.a_factor(k)));
+    plan.durations_s[k] *= std::pow(std::clamp(u, 0.3, 1.0), kBalance);
   }
 }
 
@@ -117,11 +146,50 @@ Result<Solution> TrajectoryOptimizer::Method::fixed(const Request& request) {
 Result<Solution> TrajectoryOptimizer::Method::thesis(const Request& request) {
   Limits per_axis = request.limits;
   per_axis.norm = LimitNorm::per_axis;
-  const Request thesis{request.corridor, request.start, request.goal, per_axis};
+  const Request thesis{request.corridor, request.start,      request.goal,
+                       per_axis,         request.duration_s, request.out_of_time};
   Plan plan = thesis_plan(thesis);
   if (solve_fixed(thesis, plan)) consider(thesis, plan);
   if (best_) return finish();
   return failure(thesis);
+}
+
+// The thesis' Ref. [40] and Ref. [42] in the corridor's clothes: what leaves it is not handed out.
+Result<Solution> TrajectoryOptimizer::Method::rival(const Request& request) {
+  const auto& polytopes = request.corridor.polytopes;
+  Trajectory trajectory;
+  if (config_.method == "minimum_snap") {
+    auto answer =
+        minimum_snap(request.corridor.waypoints_map, request.start, request.goal, request.limits);
+    if (!answer) return answer.error();
+    trajectory = *std::move(answer);
+    solves_ = 1;
+  } else {
+    auto answer =
+        rechecked_polynomial(request.corridor.waypoints_map, request.start, request.goal,
+                             request.limits, [&](const BezierPiece& piece) {
+                               const Polytope& home = polytopes[std::size_t(piece.polytope)];
+                               for (int j = 0; j < 6; ++j) {
+                                 if (!(home.violation(piece.control_points.col(j)) <= 1e-7))
+                                   return false;
+                               }
+                               return true;
+                             });
+    if (!answer) return answer.error();
+    trajectory = std::move(answer->trajectory);
+    solves_ = answer->plans;
+  }
+  const Certificate certificate =
+      certify(trajectory, polytopes, request.limits, request.start, request.goal);
+  if (!certificate.holds()) {
+    return fail(ErrorCode::not_certified, "the polynomial breaks its promises (" +
+                                              certificate.worst() +
+                                              "), as this method may: use method scale");
+  }
+  const int pieces = int(trajectory.pieces.size());
+  const double jerk_cost = trajectory.jerk_cost();
+  best_ = Solution{std::move(trajectory), certificate, 0, 0, pieces, jerk_cost};
+  return finish();
 }
 
 void TrajectoryOptimizer::Method::try_longer(const Request& request, const Plan& plan) {
@@ -130,15 +198,25 @@ void TrajectoryOptimizer::Method::try_longer(const Request& request, const Plan&
     Plan longer = plan;
     stretch_durations(longer, factor);
     if (solve_fixed(request, longer) && consider(request, longer)) return;
+    if (stopped()) return;
     factor *= 1.0 + step;
   }
 }
 
 bool TrajectoryOptimizer::Method::solve_scale(const Request& request, Plan& plan, double reach_m,
-                                              double gap, double end_slack, double& kappa) {
-  if (!make_problem(request, plan, true, config_.time_weight, reach_m, problem_, units_, end_slack))
+                                              bool coarse, double end_slack, double& kappa) {
+  if (!make_problem(request, plan, true, kTimeWeight, reach_m, problem_, units_, end_slack))
     return false;
-  last_ = solver_.solve(problem_, {config_.max_iterations, gap, 1e-8, 1e-3});
+  last_ = solver_.solve(
+      problem_, {.max_iterations = config_.max_iterations,
+                 .gap = coarse ? kCoarseGap : kFineGap,
+                 .feasibility = coarse ? 1e-2 : 1e-8,
+                 // From rest to rest the durations are set to what the limits need afterwards.
+                 .limit_feasibility = coarse            ? 3e-2
+                                      : request.rests() ? 1e-3
+                                                        : 1e-8,
+                 .dual_feasibility = coarse ? 0.1 : 1e-3,
+                 .stop = request.out_of_time});
   iterations_ += last_.iterations;
   ++solves_;
   if (last_.status != SplineSolver::Status::solved || !(last_.eta > 0.0)) return false;
@@ -149,8 +227,7 @@ bool TrajectoryOptimizer::Method::solve_scale(const Request& request, Plan& plan
     for (std::size_t k = 0; k < plan.durations_s.size(); ++k) {
       const auto piece =
           BezierPiece::between(plan.joints[k], plan.joints[k + 1], plan.durations_s[k]);
-      const Usage used = usage(piece, request.limits);
-      exact = std::max({exact, used.speed, std::sqrt(used.acceleration)});
+      exact = std::max(exact, time_factor(usage_of(piece, request.limits, plan.a_factor(k))));
     }
     exact *= 1.0 + 1e-12;
     stretch_durations(plan, exact);
@@ -169,7 +246,8 @@ bool TrajectoryOptimizer::Method::solve_fixed(const Request& request, Plan& plan
     last_.status = SplineSolver::Status::infeasible;
     return false;
   }
-  last_ = solver_.solve(problem_, {config_.max_iterations, 1e-7, 1e-9, 1e-6});
+  last_ = solver_.solve(problem_,
+                        {config_.max_iterations, 1e-7, 1e-9, 1e-9, 1e-6, request.out_of_time});
   iterations_ += last_.iterations;
   if (last_.status != SplineSolver::Status::solved) return false;
   take_solution(request, solver_.joints(), units_, 1.0, plan);
@@ -185,10 +263,11 @@ bool TrajectoryOptimizer::Method::consider(const Request& request, const Plan& p
   if (!certificate.holds()) return false;
   const double jerk_cost = trajectory.jerk_cost();
   const double natural = natural_jerk(plan, request.limits);
-  const double cost = config_.time_weight * std::pow(plan.duration_s() / plan.reference_s, 2) +
+  const double cost = kTimeWeight * std::pow(plan.duration_s() / plan.reference_s, 2) +
                       jerk_cost / (plan.duration_s() * natural * natural);
   if (best_ && best_cost_ <= cost) return true;
   best_cost_ = cost;
+  best_plan_ = plan;
   best_ =
       Solution{std::move(trajectory), certificate, 0, 0, int(plan.durations_s.size()), jerk_cost};
   return true;
@@ -206,6 +285,11 @@ Error TrajectoryOptimizer::Method::failure(const Request& request) const {
   std::snprintf(numbers, sizeof numbers,
                 " (%d solves, %d iterations; last primal residual %.2g, gap %.2g)", solves_,
                 iterations_, last_.primal_residual, last_.gap);
+  if (stopped()) {
+    return fail(ErrorCode::deadline_exceeded,
+                "the time for optimising was over before there was an answer: allow more time" +
+                    std::string(numbers));
+  }
   if (config_.method == "thesis" && last_.status == Status::infeasible) {
     return fail(ErrorCode::trajectory_infeasible,
                 "one quintic a segment with trapezoid durations cannot stay in the corridor and "

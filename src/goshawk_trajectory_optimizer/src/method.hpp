@@ -15,17 +15,26 @@ class TrajectoryOptimizer::Method {
 
   const Config& config() const { return config_; }
   Result<Solution> answer(const Request& request);
+  Result<Solution> stop(const Polytope& free_space, const FlatState& start, const Limits& limits);
 
  private:
+  Result<Solution> soonest_flight(const Request& request);
+  /// The smoothest trajectory of this duration, which is no shorter than the soonest.
+  Result<Solution> arrive(const Request& request, double duration_s, Solution soonest);
+  /// Slows the pieces that ask more thrust or tilt than the vehicle has.
+  Result<Solution> within_vehicle(const Request& request, Solution soonest);
+  Result<Solution> arrive_smoothly(const Request& request, double duration_s);
   Result<Solution> scale(const Request& request);
   Result<Solution> fixed(const Request& request);
   Result<Solution> thesis(const Request& request);
+  Result<Solution> rival(const Request& request);
 
-  void refine(const Request& request, Plan& plan);
+  void scale_moving(const Request& request, Plan& plan);
+  void refine(const Request& request, Plan& plan, int refinements);
   /// Time and shape together, once: the plan becomes the solution and kappa its time scale.
-  /// @param gap relative, where to stop
-  bool solve_scale(const Request& request, Plan& plan, double reach_m, double gap, double end_slack,
-                   double& kappa);
+  /// @param coarse good enough to see which pieces need more time, not to fly
+  bool solve_scale(const Request& request, Plan& plan, double reach_m, bool coarse,
+                   double end_slack, double& kappa);
   /// Least jerk with the plan's durations.
   bool solve_fixed(const Request& request, Plan& plan);
   /// Fixed durations, longer and longer, until a plan is certified.
@@ -35,6 +44,7 @@ class TrajectoryOptimizer::Method {
   /// Keeps the plan if it is certified and better than what is kept.
   bool consider(const Request& request, const Plan& plan);
   Solution finish();
+  bool stopped() const { return last_.status == SplineSolver::Status::stopped; }
   Error failure(const Request& request) const;
 
   Config config_;
@@ -42,6 +52,7 @@ class TrajectoryOptimizer::Method {
   SplineProblem problem_;
   Units units_;
   std::optional<Solution> best_;
+  Plan best_plan_;
   double best_cost_ = 0.0;
   bool outside_ = false;  // the plan last considered leaves its polytopes
   int iterations_ = 0;

@@ -12,6 +12,9 @@ namespace {
 constexpr double kLeastLength = 1e-6;  // [m] of a path, for the estimate of its duration
 constexpr double kShortest = 0.01;     // of a mean piece: shorter ones cost accuracy
 
+// In longest pieces: the sooner the first ends, the sooner the acceleration is there.
+constexpr double kFirstFromRest = 0.4;
+
 constexpr double kCorner = 0.6;  // of v^2 / a: how far a corner is cut, generously
 
 double speed_along(const FlatState& state, const Vec3& from, const Vec3& to) {
@@ -60,13 +63,14 @@ Plan cut_trapezoid(const Request& request, const Config& config, const Lead& lea
       plan.reference_s,
       rest_to_rest_duration_s(kLeastLength, request.limits.v_max_m_s, request.limits.a_max_m_s2));
   const double longest = std::min(config.piece_duration_s, plan.reference_s / config.min_pieces);
+  const auto first = [&](const FlatState& end) {
+    return is_moving(end) ? lead.first_piece : kFirstFromRest;
+  };
   // Of a piece that begins or ends at t.
   const auto cap = [&](double t) {
     double most = longest;
-    if (is_moving(request.start)) most = std::min(most, std::max(lead.first_piece * longest, t));
-    if (is_moving(request.goal)) {
-      most = std::min(most, std::max(lead.first_piece * longest, 0.5 * (plan.reference_s - t)));
-    }
+    most = std::min(most, std::max(first(request.start) * longest, t));
+    most = std::min(most, std::max(first(request.goal) * longest, 0.5 * (plan.reference_s - t)));
     return most;
   };
   double begin = 0.0;
@@ -86,6 +90,7 @@ Plan cut_trapezoid(const Request& request, const Config& config, const Lead& lea
     begin += duration;
   }
   plan.joints.back() = request.goal;
+  plan.braking_s = lead.braking * StartAllowance::of(request.start, request.limits).until_s;
   return plan;
 }
 
@@ -193,6 +198,26 @@ double natural_jerk(const Plan& plan, const Limits& limits) {
   return limits.a_max_m_s2 / ramp_s;
 }
 
+namespace {
+
+double over_vertical(double limit, double vertical) {
+  return vertical > 0.0 ? limit / vertical : 1.0;
+}
+
+// Pieces that begin while a start above a limit is braked may be as fast as it.
+void allow_for_start(const Request& request, const Plan& plan, SplineProblem& problem) {
+  const StartAllowance allowance = StartAllowance::of(request.start, request.limits);
+  double begin = 0.0;
+  for (std::size_t k = 0; k < plan.durations_s.size(); ++k) {
+    if (begin >= std::min(plan.braking_s, allowance.until_s)) break;
+    problem.v_max[k] *= allowance.speed;
+    problem.a_max[k] *= allowance.acceleration;
+    begin += plan.durations_s[k];
+  }
+}
+
+}  // namespace
+
 bool make_problem(const Request& request, const Plan& plan, bool scale, double time_weight,
                   double reach_m, SplineProblem& problem, Units& units, double end_slack) {
   const std::size_t m = plan.durations_s.size();
@@ -215,6 +240,14 @@ bool make_problem(const Request& request, const Plan& plan, bool scale, double t
   }
   problem.v_max.assign(m, tighten);
   problem.a_max.assign(m, tighten * limits.a_max_m_s2 * units.time_s / limits.v_max_m_s);
+  if (limits.j_max_m_s3 > 0.0) {
+    problem.j_max.assign(
+        m, tighten * limits.j_max_m_s3 * units.time_s * units.time_s / limits.v_max_m_s);
+  }
+  problem.v_over_vertical = over_vertical(limits.v_max_m_s, limits.v_max_vertical_m_s);
+  problem.a_over_vertical = over_vertical(limits.a_max_m_s2, limits.a_max_vertical_m_s2);
+  for (std::size_t k = 0; k < m; ++k) problem.a_max[k] *= plan.a_factor(k);
+  allow_for_start(request, plan, problem);
   // A start or goal may lie on a limit: half of the certificate's tolerance gives it an interior.
   const auto loosen = [&](std::size_t piece) {
     problem.v_max[piece] += 0.5e-6 / limits.v_max_m_s + end_slack;

@@ -17,16 +17,15 @@ std::string number(double value) {
   return text;
 }
 
-double size(const Vec3& v, LimitNorm norm) {
-  return norm == LimitNorm::euclidean ? v.norm() : v.cwiseAbs().maxCoeff();
-}
+constexpr double kMostExcess = 5.0;  // of a limit: beyond, the start is a mistake
 
 Status check_limits(const Limits& limits) {
   if (auto status = limits.check(); !status) return status;
-  for (const double limit : {limits.v_max_m_s, limits.a_max_m_s2}) {
-    if (limit < 1e-3 || limit > 1e4) {
+  for (const double limit : {limits.v_max_m_s, limits.a_max_m_s2, limits.j_max_m_s3,
+                             limits.v_max_vertical_m_s, limits.a_max_vertical_m_s2}) {
+    if (limit != 0.0 && (limit < 1e-3 || limit > 1e6)) {
       return fail(ErrorCode::invalid_limits,
-                  "a limit of " + number(limit) + " is outside 0.001 to 10000: check its unit");
+                  "a limit of " + number(limit) + " is outside 0.001 to 1000000: check its unit");
     }
   }
   return success();
@@ -74,7 +73,7 @@ Status check_overlaps(const Corridor& corridor) {
 }
 
 Status check_end(const char* name, ErrorCode code, const FlatState& state, const Vec3& waypoint,
-                 const Limits& limits) {
+                 const Limits& limits, double most) {
   if (!is_finite(state.position) || !is_finite(state.velocity) || !is_finite(state.acceleration)) {
     return fail(ErrorCode::invalid_input, std::string("the ") + name + " state is not finite");
   }
@@ -83,17 +82,19 @@ Status check_end(const char* name, ErrorCode code, const FlatState& state, const
                           " is not the corridor's end " + to_text(waypoint) +
                           ": build the corridor from the same state");
   }
-  const auto within = [&](const char* what, const Vec3& value, double limit, const char* unit) {
-    if (size(value, limits.norm) <= limit + 1e-6) return success();
+  const auto within = [&](const char* what, double usage, double limit, const char* unit) {
+    if (usage <= most + 1e-6 / limit) return success();
     return Status(fail(code, std::string("the ") + name + " " + what + " of " +
-                                 number(size(value, limits.norm)) + " " + unit +
-                                 " is above the limit of " + number(limit) + " " + unit +
+                                 number(usage * limit) + " " + unit + " is above " +
+                                 number(most * limit) + " " + unit +
                                  ": slow down first or raise the limit"));
   };
-  if (auto status = within("speed", state.velocity, limits.v_max_m_s, "m/s"); !status) {
+  if (auto status = within("speed", limits.speed_usage(state.velocity), limits.v_max_m_s, "m/s");
+      !status) {
     return status;
   }
-  return within("acceleration", state.acceleration, limits.a_max_m_s2, "m/s^2");
+  return within("acceleration", limits.acceleration_usage(state.acceleration), limits.a_max_m_s2,
+                "m/s^2");
 }
 
 }  // namespace
@@ -105,11 +106,12 @@ Status check_request(const Corridor& corridor, const FlatState& start, const Fla
   if (auto status = check_places(corridor); !status) return status;
   if (auto status = check_overlaps(corridor); !status) return status;
   if (auto status = check_end("start", ErrorCode::start_infeasible, start,
-                              corridor.waypoints_map.front(), limits);
+                              corridor.waypoints_map.front(), limits, kMostExcess);
       !status) {
     return status;
   }
-  return check_end("goal", ErrorCode::invalid_input, goal, corridor.waypoints_map.back(), limits);
+  return check_end("goal", ErrorCode::invalid_input, goal, corridor.waypoints_map.back(), limits,
+                   1.0);
 }
 
 }  // namespace goshawk::trajectory_optimizer

@@ -6,6 +6,7 @@ void SplineProblem::clear() {
   durations.clear();
   v_max.clear();
   a_max.clear();
+  j_max.clear();
   joints.clear();
   face_points.clear();
   faces.clear();

@@ -3,186 +3,129 @@
 #include <algorithm>
 #include <cmath>
 
-#include "spline_solver_parts.hpp"
+#include "spline_memory.hpp"
 
-// The iteration itself and the set-up; the Newton system is in spline_newton.cpp.
 namespace goshawk::trajectory_optimizer {
 namespace {
 
-constexpr double kStartMargin = 0.1;    // of the first slacks, in the problem's units
-constexpr double kStepFraction = 0.99;  // of the way to the boundary
+constexpr double kStepFraction = 0.995;  // of the way to the boundary
+
+// Farkas: for any x', z'f(x') >= z'(f(x) + s) - s'z + (f'z)'(x' - x), as each f is convex. Where
+// that is above zero for every x' within reach of x, no x' within reach satisfies f(x') <= 0.
+bool proves_infeasible(const SplineState& s) {
+  constexpr double kReach = 1e4;  // in the problem's units, in which a piece is about 1
+  return s.proof - s.gap > kReach * s.multiplier_residual;
+}
 
 }  // namespace
 
+SplineSolver::SplineSolver() : memory_(std::make_unique<Memory>()) {}
+SplineSolver::SplineSolver(SplineSolver&&) noexcept = default;
+SplineSolver& SplineSolver::operator=(SplineSolver&&) noexcept = default;
+SplineSolver::~SplineSolver() = default;
+
 SplineSolver::Outcome SplineSolver::solve(const SplineProblem& problem, const Settings& settings) {
-  set_up(problem);
   Outcome out;
-  if (constant_point_violated_) {
+  memory_->load(problem);
+  if (memory_->constant_point_violated) {
     out.status = Status::infeasible;
     return out;
   }
-  start_iterates(problem.time_weight);
-  const auto converged = [&] {
-    return primal_residual_ <= settings.feasibility &&
-           gap_ <= settings.gap * std::abs(objective_) + 1e-14;
-  };
-  for (;; ++out.iterations) {
-    evaluate_cost(problem.time_weight);
-    const bool inside = linearise();
-    out.objective = objective_;
-    out.gap = gap_;
-    out.primal_residual = primal_residual_;
-    out.dual_residual = dual_residual_;
-    out.eta = eta_;
-    if (converged() && dual_residual_ <= settings.dual_feasibility) {
-      out.status = Status::solved;
-      break;
-    }
-    if (proves_infeasible()) {
-      out.status = Status::infeasible;
-      break;
-    }
-    if (out.iterations >= settings.max_iterations) {
-      out.status = Status::iteration_limit;
-      break;
-    }
-    if (!inside || !factor()) break;
-    const double reach = std::min(1.0, predict());
-    const double sigma = (1.0 - reach) * (1.0 - reach);
-    const double step = std::min(1.0, kStepFraction * correct(sigma));
-    if (!(step > 1e-8)) break;
-    apply_step(step);
+  memory_->start();
+  iterate(settings, out);
+  const bool gave_up =
+      out.status == Status::numerical_trouble || out.status == Status::iteration_limit;
+  if (gave_up && !problem.scale && needs_more_time(problem, settings, out)) {
+    out.status = Status::infeasible;
+    return out;
   }
-  // Rounding ends the method before the dual residual where slacks are tiny; what counts for the
-  // answer, its feasibility and its gap, is there already.
-  if (out.status == Status::numerical_trouble && out.dual_residual <= 1e-4 && converged()) {
-    out.status = Status::solved;
-  }
-  for (int k = 0; k <= last_; ++k) solution_[std::size_t(k)] = joint_of(x_, k);
+  solution_.resize(problem.joints.size());
+  for (int k = 0; k <= problem.pieces(); ++k) solution_[std::size_t(k)] = memory_->joint(k);
   return out;
 }
 
-void SplineSolver::set_up(const SplineProblem& problem) {
-  scale_ = problem.scale;
-  eta_ = 1.0;
-  last_ = problem.pieces();
-  start_rate_ = scale_ ? problem.start_rate : Joint::Zero();
-  goal_rate_ = scale_ ? problem.goal_rate : Joint::Zero();
-  const std::size_t size = std::size_t(last_ + 1) * kBlock;
-  for (auto* x : {&x_, &cost_gradient_, &dual_, &rhs_, &dx_}) x->assign(size, 0.0);
-  for (int k = 0; k <= last_; ++k) joint_of(x_, k) = problem.joints[std::size_t(k)];
-  solution_.resize(std::size_t(last_) + 1);
-  hessian_.resize(std::size_t(last_) + 1);
-  jerk_.clear();
-  for (const double T : problem.durations) {
-    jerk_.push_back(problem.jerk_weight * jerk_hessian(T));
+// Relaxes the limits of a problem with fixed durations by an unknown eta, which always has an
+// answer inside the polytopes, and bounds the least eta from below. Above 1: infeasible.
+bool SplineSolver::needs_more_time(const SplineProblem& problem, const Settings& settings,
+                                   Outcome& out) {
+  constexpr double kSmooth = 1e-3;  // what the jerk may add to eta within the limits
+  relaxed_ = problem;
+  relaxed_.scale = true;
+  relaxed_.time_weight = 1.0;
+  relaxed_.jerk_weight = 1.0;
+  relaxed_.start_rate.setZero();
+  relaxed_.goal_rate.setZero();
+  // Jerk points are differences of acceleration points: |j| <= 6 a_max / T, in every norm here
+  // up to sqrt(3).
+  double jerk_bound = 0.0;
+  for (std::size_t k = 0; k < problem.durations.size(); ++k) {
+    const double T = problem.durations[k];
+    jerk_bound += 0.5 * T * std::pow(6.0 * std::sqrt(3.0) * problem.a_max[k] / T, 2);
   }
-  faces_ = problem.faces;
-  face_points_ = problem.face_points;
-  rows_.resize(faces_.size());
-  constant_point_violated_ = false;
-  for_each_set([](auto& set) {
-    set.points.clear();
-    set.cones.clear();
-  });
-  add_limits(problem);
+  relaxed_.jerk_weight = kSmooth / jerk_bound;
+  memory_->load(relaxed_);
+  memory_->start();
+  Settings coarse = settings;
+  coarse.gap = 1e-3;
+  coarse.feasibility = 1e-6;
+  coarse.limit_feasibility = 1e-3;
+  coarse.dual_feasibility = 1e-4;
+  Outcome relaxed;
+  iterate(coarse, relaxed);
+  out.iterations += relaxed.iterations;
+  if (relaxed.status != Status::solved) return false;
+  const SplineState& s = memory_->state;
+  return s.objective + s.proof - s.gap > 1.0 + kSmooth;
 }
 
-// Control points of neighbouring pieces coincide at a joint: one limit, the tighter.
-void SplineSolver::add_limits(const SplineProblem& problem) {
-  for (int k = 0; k < last_; ++k) {
-    const auto i = std::size_t(k);
-    const double T = problem.durations[i];
-    if (k > 0) {
-      const double v_max = std::min(problem.v_max[i - 1], problem.v_max[i]);
-      const double a_max = std::min(problem.a_max[i - 1], problem.a_max[i]);
-      add_limit(problem, true, {k, false, velocity_point(0, T), v_max});
-      add_limit(problem, false, {k, false, acceleration_point(0, T), a_max});
-    }
-    for (int j = 1; j <= 3; ++j) {
-      add_limit(problem, true, {k, j != 1, velocity_point(j, T), problem.v_max[i]});
-    }
-    for (int j = 1; j <= 2; ++j) {
-      add_limit(problem, false, {k, true, acceleration_point(j, T), problem.a_max[i]});
-    }
-  }
-}
-
-// A point that no unknown moves is checked once and makes no cone: the method needs an interior,
-// and a constant may lie on its limit.
-void SplineSolver::add_limit(const SplineProblem& problem, bool velocity, const LimitPoint& point) {
-  const bool per_axis = problem.norm == LimitNorm::per_axis;
-  if (!touches_unknown(point)) {
-    const Vec3 y = value(point, x_);
-    if (!scale_) {
-      const double size = per_axis ? y.cwiseAbs().maxCoeff() : y.norm();
-      if (!(size <= point.limit * (1.0 + 1e-9))) constant_point_violated_ = true;
+void SplineSolver::iterate(const Settings& settings, Outcome& out) {
+  SplineState& s = memory_->state;
+  const SplineKernels& kernels = spline_kernels();
+  const auto converged = [&] {
+    // The bound on the optimum below is the objective plus z'f(x), and z'f(x) = proof - gap.
+    const double gap = std::max(s.gap, s.gap - s.proof);
+    return s.face_violation <= settings.feasibility &&
+           s.limit_violation <= settings.limit_feasibility &&
+           gap <= settings.gap * std::abs(s.objective) + 1e-14;
+  };
+  double first_gap = 0.0;
+  for (;; ++out.iterations) {
+    kernels.linearise(s);
+    out.objective = s.objective;
+    out.gap = s.gap;
+    out.primal_residual = s.primal_residual;
+    out.dual_residual = s.dual_residual;
+    out.eta = s.eta;
+    if (converged() && s.dual_residual <= settings.dual_feasibility) {
+      out.status = Status::solved;
       return;
     }
-    if (y.isZero(0.0)) return;
-  }
-  const auto add = [&](auto& set) {
-    set.points.push_back(point);
-    for (int c = 0; c < set.kConesPerPoint; ++c) {
-      set.cones.emplace_back();
-      set.cones.back().set_limit(point.limit);
+    first_gap = out.iterations == 0 ? s.gap : first_gap;
+    if (!(s.gap < 1e6 * (first_gap + 1e-6))) break;  // multipliers without bound
+    if (proves_infeasible(s)) {
+      out.status = Status::infeasible;
+      return;
     }
-  };
-  if (velocity && scale_) {
-    per_axis ? add(velocity_axis_) : add(velocity_);
-  } else {
-    per_axis ? add(plain_axis_) : add(plain_);
-  }
-}
-
-bool SplineSolver::moves(int joint) const {
-  if (joint == 0) return !start_rate_.isZero(0.0);
-  if (joint == last_) return !goal_rate_.isZero(0.0);
-  return true;
-}
-
-bool SplineSolver::touches_unknown(const LimitPoint& point) const {
-  const bool first = !point.map.from_first.isZero(0.0) && moves(point.joint);
-  return first || (point.second && moves(point.joint + 1));
-}
-
-// Slacks near what the guess gives, multipliers that make every product equal: a start on the
-// central path, for the price of one pass.
-void SplineSolver::start_iterates(double time_weight) {
-  degree_ = double(rows_.size());
-  for_each_set([&](auto& set) { degree_ += double(set.cones.size()); });
-  degree_ = std::max(degree_, 1.0);
-  evaluate_cost(time_weight);
-  const double mu = std::max(objective_, 1e-6) / degree_;
-  for (const FacePoint& point : face_points_) {
-    const Vec3 y = joint_of(x_, point.joint) * point.map;
-    for (int i = point.begin; i < point.end; ++i) {
-      const Face& face = faces_[std::size_t(i)];
-      FaceRow& row = rows_[std::size_t(i)];
-      row.s = std::max(face.offset - face.normal.dot(y), kStartMargin);
-      row.z = mu / row.s;
+    if (out.iterations >= settings.max_iterations) {
+      out.status = Status::iteration_limit;
+      return;
     }
-  }
-  for_each_set([&](auto& set) {
-    for_each_cone(set, x_, [&](auto& cone, const auto& y) {
-      cone.start(cone.slack(y, eta_), kStartMargin, mu);
-    });
-  });
-}
-
-void SplineSolver::apply_step(double step) {
-  for (std::size_t i = 0; i < x_.size(); ++i) x_[i] += step * dx_[i];
-  eta_ += step * deta_;
-  for (FaceRow& row : rows_) {
-    row.s += step * row.ds;
-    row.z += step * row.dz;
-  }
-  for_each_set([&](auto& set) {
-    for (auto& cone : set.cones) {
-      cone.s += step * cone.ds;
-      cone.z += step * cone.dz;
+    if (settings.stop != nullptr && *settings.stop && (*settings.stop)()) {
+      out.status = Status::stopped;
+      return;
     }
-  });
+    if (!kernels.factor(s)) break;
+    const double reach = kernels.predict(s);
+    // s'z where the predictor ends, as ds's + dz'z = -s'z.
+    const double ahead = (1.0 - reach) * s.gap + reach * reach * s.product;
+    const double sigma = std::pow(std::clamp(ahead / s.gap, 0.0, 1.0), 3);
+    const double step = std::min(1.0, kStepFraction * kernels.correct(s, sigma * s.gap / s.degree));
+    if (!(step > 1e-7)) break;
+    kernels.apply(s, step);
+  }
+  // Rounding ends the method before the dual residual where slacks are tiny; what counts for the
+  // answer, its feasibility and its gap, is there already.
+  if (out.dual_residual <= 1e-4 && converged()) out.status = Status::solved;
 }
 
 }  // namespace goshawk::trajectory_optimizer

@@ -1,8 +1,5 @@
 #include "goshawk/trajectory_optimizer/trajectory_optimizer.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <type_traits>
 #include <utility>
 
 #include "goshawk/trajectory_optimizer/request_check.hpp"
@@ -11,20 +8,7 @@
 namespace goshawk::trajectory_optimizer {
 namespace {
 
-std::string faults_of(const Config& config) {
-  std::string faults;
-  describe(config,
-           [&](const char* name, const auto& value, const char*, const char*, const auto& rule) {
-             bool valid = true;
-             if constexpr (std::is_same_v<std::decay_t<decltype(value)>, std::string>) {
-               valid = std::ranges::find(rule.choices, value) != rule.choices.end();
-             } else {
-               valid = rule.contains(double(value));
-             }
-             if (!valid) faults += std::string(faults.empty() ? "" : ", ") + name;
-           });
-  return faults;
-}
+constexpr double kLongest_s = 1e6;
 
 }  // namespace
 
@@ -35,21 +19,33 @@ TrajectoryOptimizer& TrajectoryOptimizer::operator=(TrajectoryOptimizer&&) noexc
 TrajectoryOptimizer::~TrajectoryOptimizer() = default;
 
 Result<TrajectoryOptimizer> TrajectoryOptimizer::create(const Config& config) {
-  if (const std::string faults = faults_of(config); !faults.empty()) {
-    return fail(ErrorCode::invalid_parameter, "out of range in the optimizer's config: " + faults);
-  }
+  ParameterFaults faults;
+  describe(config, faults);
+  if (auto status = faults.status("the optimizer's config: "); !status) return status.error();
   return TrajectoryOptimizer(config);
 }
 
 Result<Solution> TrajectoryOptimizer::optimise(const Corridor& corridor, const FlatState& start,
-                                               const FlatState& goal, const Limits& limits) {
+                                               const FlatState& goal, const Limits& limits,
+                                               const Query& query) {
   if (auto status = check_request(corridor, start, goal, limits); !status) return status.error();
-  return method_->answer({corridor, start, goal, limits});
+  if (!(query.duration_s >= 0.0 && query.duration_s <= kLongest_s)) {
+    return fail(ErrorCode::invalid_input, "a duration of " + std::to_string(query.duration_s) +
+                                              " s was asked for: 0 (soon) or up to 1e6 s is meant");
+  }
+  return method_->answer({corridor, start, goal, limits, query.duration_s, &query.out_of_time});
+}
+
+Result<Solution> TrajectoryOptimizer::stop(const Polytope& free_space, const FlatState& start,
+                                           const Limits& limits) {
+  return method_->stop(free_space, start, limits);
 }
 
 std::string_view TrajectoryOptimizer::implementation() const {
   const std::string& method = method_->config().method;
   if (method == "thesis") return "bezier-thesis";
+  if (method == "minimum_snap") return "polynomial-minimum-snap";
+  if (method == "polynomial") return "polynomial-rechecked";
   return method == "fixed" ? "bezier-fixed" : "bezier-scale";
 }
 

@@ -118,7 +118,7 @@ TEST(BadInput, Config) {
   EXPECT_TRUE(refused({.piece_duration_s = kNaN}));
   EXPECT_TRUE(refused({.min_pieces = 0}));
   EXPECT_TRUE(refused({.refinement_passes = -1}));
-  EXPECT_TRUE(refused({.time_weight = 0.0}));
+  EXPECT_TRUE(refused({.extra_time = -0.1}));
   EXPECT_TRUE(refused({.max_iterations = 0}));
   EXPECT_FALSE(refused({}));
 }

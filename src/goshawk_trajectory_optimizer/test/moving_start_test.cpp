@@ -100,12 +100,48 @@ TEST(MovingStart, TowardsAWallTooFastIsSaidToBeInfeasible) {
   EXPECT_EQ(solution.code(), ErrorCode::start_infeasible);
 }
 
-TEST(MovingStart, AboveALimitIsRefusedWithAReason) {
+// Sampled, and held against what the certificate says.
+void expect_braked(const Solution& solution, const FlatState& start, const Limits& limits) {
+  ASSERT_TRUE(solution.certificate.holds()) << solution.certificate.worst();
+  const auto allowance = StartAllowance::of(start, limits);
+  const double until_s = solution.certificate.start_excess_s;
+  const Trajectory& trajectory = solution.trajectory;
+  for (int i = 0; i <= 2000; ++i) {
+    const double t = trajectory.duration_s() * i / 2000;
+    const FlatState s = trajectory.sample(t);
+    const double v = limits.speed_usage(s.velocity);
+    const double a = limits.acceleration_usage(s.acceleration);
+    ASSERT_LE(v, t < until_s ? allowance.speed + 1e-6 : 1.0 + 1e-5) << t;
+    ASSERT_LE(a, t < until_s ? allowance.acceleration + 1e-6 : 1.0 + 1e-5) << t;
+  }
+}
+
+TEST(MovingStart, AboveALimitIsBrakedAndTheCertificateSaysSo) {
   auto optimizer = make();
   auto start = at_rest(Vec3::Zero());
-  start.velocity = Vec3(2.1, 0, 0);
+  for (const double v : {2.05, 2.5, 3.0, 4.0}) {
+    for (const double a : {-2.0, 0.0, 1.5, 2.5}) {
+      SCOPED_TRACE(std::to_string(v) + " " + std::to_string(a));
+      start.velocity = Vec3(v, 0, 0);
+      start.acceleration = Vec3(a, 0, 0);
+      const auto solution =
+          optimizer.optimise(test::straight_corridor(20.0), start, at_rest(Vec3(20, 0, 0)), {});
+      ASSERT_TRUE(solution) << solution.error().message;
+      ASSERT_NO_FATAL_FAILURE(expect_braked(*solution, start, {}));
+      EXPECT_GE(solution->certificate.start_excess_m_s, v - 2.0 - 1e-9);
+      EXPECT_GT(solution->certificate.start_excess_s, (v - 2.0) / 2.0 * 0.99);
+      EXPECT_LT(solution->certificate.start_excess_s, StartAllowance::of(start, {}).until_s + 0.5);
+      EXPECT_EQ(solution->trajectory.sample(0.0).position, start.position);
+    }
+  }
+}
+
+TEST(MovingStart, FarAboveALimitIsRefusedWithAReason) {
+  auto optimizer = make();
+  auto start = at_rest(Vec3::Zero());
+  start.velocity = Vec3(11.0, 0, 0);
   const auto fast =
-      optimizer.optimise(test::straight_corridor(5.0), start, at_rest(Vec3(5, 0, 0)), {});
+      optimizer.optimise(test::straight_corridor(50.0), start, at_rest(Vec3(50, 0, 0)), {});
   ASSERT_FALSE(fast);
   EXPECT_EQ(fast.code(), ErrorCode::start_infeasible);
   EXPECT_NE(fast.error().message.find("speed"), std::string::npos);

@@ -36,7 +36,7 @@ struct Instance {
 Instance random_instance(Random& random, bool scale, double stretch) {
   Instance i;
   test::CorridorKind kind;
-  kind.segments = 1 + random.below(3);
+  kind.segments = 1 + random.below(2);
   kind.planes = 6 + random.below(5);
   kind.least_length_m = 0.3;
   kind.most_length_m = 1.5;
@@ -47,8 +47,8 @@ Instance random_instance(Random& random, bool scale, double stretch) {
               .a_max_m_s2 = random.uniform(0.5, 4.0),
               .norm = random.chance(0.5) ? LimitNorm::euclidean : LimitNorm::per_axis};
   Config config;
-  config.min_pieces = 2 + random.below(3);
-  config.piece_duration_s = 2.0;
+  config.min_pieces = 2;
+  config.piece_duration_s = random.uniform(2.0, 10.0);
   i.plan = cut_trapezoid(i.request(), config);
   for (double& duration : i.plan.durations_s) duration *= stretch * random.uniform(0.8, 1.25);
   make_problem(i.request(), i.plan, scale, std::pow(10.0, random.uniform(-2.0, 2.0)), HUGE_VAL,

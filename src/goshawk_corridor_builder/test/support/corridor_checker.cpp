@@ -137,6 +137,10 @@ double volume_of(const Polytope& polytope) {
   return volume;
 }
 
+bool cuts_into_a_voxel(const Polytope& polytope, const VoxelGrid& grid) {
+  return !cube_faults(polytope, grid, 0).empty();
+}
+
 std::string faults_of(const Corridor& corridor, const VoxelGrid& grid,
                       std::span<const Vec3> path_map) {
   std::string faults;

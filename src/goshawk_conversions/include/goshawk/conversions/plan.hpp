@@ -10,9 +10,11 @@ struct PlanRequest {
   std::int64_t stamp_ns = 0;
   FlatState start;
   FlatState goal;
+  std::vector<Vec3> other_goals_map = {};  // [m] positions that will do as well as the goal's
   double goal_yaw_rad = 0.0;
   Limits limits;
   double deadline_s = 0.0;  // after the stamp; 0 for none
+  double duration_s = 0.0;  // of the flight; 0: as fast as the limits allow
 };
 
 /// @return wrong_frame, invalid_input or invalid_limits where the message is wrong
@@ -22,7 +24,7 @@ goshawk_msgs::msg::PlanRequest to_msg(const PlanRequest& request);
 /// @return deadline_exceeded where the request's deadline lies before now
 Status check_deadline(const PlanRequest& request, std::int64_t now_ns);
 
-/// Limits with a norm that is neither 0 nor 1 are invalid_limits, like those not above zero.
+/// Limits with a norm above 2 are invalid_limits, like those not above zero.
 Result<Limits> from_msg(const goshawk_msgs::msg::Limits& m);
 goshawk_msgs::msg::Limits to_msg(const Limits& limits);
 

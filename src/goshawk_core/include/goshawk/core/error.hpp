@@ -37,6 +37,8 @@ enum class ErrorCode {
   tracking_lost,  // odometry is missing, stale or too far from the trajectory
   stage_silent,   // a stage did not answer in time
   io_failed,      // a file or a socket could not be used
+  collision,      // the vehicle's body touches an obstacle, as planned or as flown
+  cancelled,      // whoever asked wants no answer any more
 };
 
 std::string_view to_string(ErrorCode code);

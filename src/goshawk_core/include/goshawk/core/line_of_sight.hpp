@@ -22,5 +22,7 @@ bool line_is_free(const VoxelGrid& grid, const Vec3& a_map, const Vec3& b_map);
 /// longest axis; for drawing and tests. May contain indices outside any grid.
 /// @pre coordinates below 2^30 (else throws)
 std::vector<Index3> supercover(const Vec3& a, const Vec3& b);
+/// The same into memory that is reused: `cells` is overwritten.
+void supercover(const Vec3& a, const Vec3& b, std::vector<Index3>& cells);
 
 }  // namespace goshawk

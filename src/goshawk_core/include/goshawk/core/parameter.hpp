@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "goshawk/core/result.hpp"
+
 namespace goshawk {
 
 /// How a plain config struct tells its parameters. Each struct has one template
@@ -34,5 +36,32 @@ struct OneOf {
 
 /// Anything of the right type (finite, for numbers).
 struct Anything {};
+
+/// The visitor that checks a config struct in the program: it collects every value that lies
+/// outside of what describe() allows, and whatever else is wrong.
+///
+///     ParameterFaults faults;
+///     describe(config, faults);
+///     if (config.min_n > config.max_n) faults.add("min_n is above max_n");
+///     return faults.status();
+class ParameterFaults {
+ public:
+  void operator()(const char* name, double value, const char* unit, const char* text,
+                  const Range& range);
+  void operator()(const char* name, double value, const char* unit, const char* text,
+                  const Anything&);
+  void operator()(const char* name, const std::string& value, const char* unit, const char* text,
+                  const OneOf& words);
+  void operator()(const char*, const std::string&, const char*, const char*, const Anything&) {}
+
+  void add(const std::string& fault);
+  bool empty() const { return text_.empty(); }
+
+  /// @return invalid_parameter with every fault, behind `prefix`; or success
+  Status status(const std::string& prefix = "") const;
+
+ private:
+  std::string text_;
+};
 
 }  // namespace goshawk

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "goshawk/core/result.hpp"
@@ -40,6 +41,15 @@ struct Ball {
 /// disagree, a radius of minus infinity. The ball is inside even after rounding.
 Ball chebyshev_ball(const Polytope& polytope);
 Ball chebyshev_ball(const Polytope& a, const Polytope& b);
+
+/// A polytope's faces where they lie in memory: normal i is normals[3 i .. 3 i + 2].
+struct HalfSpaces {
+  const double* normals = nullptr;
+  const double* offsets = nullptr;  // [m]
+  int count = 0;
+};
+/// The same for the intersection of any number of polytopes.
+Ball chebyshev_ball(std::span<const HalfSpaces> polytopes);
 
 /// What a corridor builder hands to a trajectory optimizer: polytope k holds the segment from
 /// waypoint k to waypoint k + 1.

@@ -11,6 +11,15 @@
 
 namespace goshawk::corridor_builder {
 
+/// The map before obstacles were grown, for the margin `sphere`: polytopes keep `radius_m` away
+/// from every set voxel of `occupied`, measured to the whole cube.
+struct RawObstacles {
+  const BitGrid* occupied = nullptr;  // same size and place as the grown grid
+  double radius_m = 0.0;              // [m] what the grown grid was grown by, or less
+  const BitGrid* forbidden =
+      nullptr;  // voxels that only the vehicle's centre keeps out of; or none
+};
+
 /// Wraps a polyline in convex polytopes that no obstacle cuts into (thesis, section "Safe Flight
 /// Corridor Generation"; obstacles are whole cubes, not points: docs/corridors.md).
 ///
@@ -21,7 +30,9 @@ namespace goshawk::corridor_builder {
 /// - start and goal are the path's ends, to the bit, and lie in the first and last polytope (up to
 ///   1e-9 voxel edges where they touch a face); the path between waypoint k and k + 1 of the
 ///   result lies in polytope k;
-/// - consecutive polytopes share a ball of more than 1e-6 m, which is reported.
+/// - consecutive polytopes share a ball, which is reported: of half a voxel (less 2e-6 voxel edges)
+///   wherever the path can be followed through free voxels that share faces, of more than 1e-6 m
+///   always.
 ///
 /// Not thread-safe: a builder keeps its working memory from call to call. The same input gives the
 /// same bits, whatever was built before.
@@ -36,10 +47,17 @@ class CorridorBuilder {
 
   /// @param grid obstacles grown by the vehicle already; outside is blocked
   /// @param waypoints_map [m] n >= 2 points, frame `map`; equal neighbours are allowed
+  /// @param raw needed for margin `sphere`, else not looked at
   /// @return invalid_input (not finite, fewer than two points, a grid that disagrees with itself),
   ///   segment_blocked (a segment meets an occupied cube's interior or leaves the map; names the
   ///   segment and the place), corridor_disjoint (two polytopes share no ball)
-  Result<Corridor> build(const VoxelGrid& grid, std::span<const Vec3> waypoints_map);
+  Result<Corridor> build(const VoxelGrid& grid, std::span<const Vec3> waypoints_map,
+                         const RawObstacles* raw = nullptr);
+
+  /// The same into memory that is reused: a repeated query allocates nothing.
+  /// @param corridor overwritten; left as it was after a failure
+  Status build(const VoxelGrid& grid, std::span<const Vec3> waypoints_map, const RawObstacles* raw,
+               Corridor& corridor);
 
   /// @return the generator's name, for reports: "ellipsoid" or "box"
   std::string_view implementation() const;

@@ -12,6 +12,7 @@ namespace goshawk::flight_check {
 struct Config {
   Body body;
   Options options;
+  double period_s = 0.2;
 };
 
 template <typename Self, typename Visitor>
@@ -29,6 +30,8 @@ void describe(Self& c, Visitor&& visit) {
         "voxels never measured, and all that lies outside of the map, are obstacles", Anything{});
   visit("tolerance_m", c.options.tolerance_m, "m",
         "the smallest clearance is found to within this distance", Range{1e-5, 1.0});
+  visit("period_s", c.period_s, "s", "how often the flight since the last time is judged",
+        Range{0.01, 10.0});
 }
 
 }  // namespace goshawk::flight_check

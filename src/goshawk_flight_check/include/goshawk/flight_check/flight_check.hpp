@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "goshawk/core/result.hpp"
 #include "goshawk/core/vector.hpp"
@@ -65,6 +66,11 @@ class FlightCheck {
   /// @return map_empty for no tree or no node; invalid_parameter
   static Result<FlightCheck> from_tree(std::unique_ptr<octomap::OcTree> tree, const Body& body = {},
                                        const Options& options = {});
+
+  /// @param payload of an octomap_msgs/Octomap message with `binary` set
+  /// @return map_malformed, map_empty or invalid_parameter
+  static Result<FlightCheck> from_payload(std::string_view payload, double resolution_m,
+                                          const Body& body = {}, const Options& options = {});
 
   /// @param track in the order of time; one sample is a vehicle that does not move
   /// @return invalid_input for no sample, a number that is not finite, a position beyond 1e6 m,

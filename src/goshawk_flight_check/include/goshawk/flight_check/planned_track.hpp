@@ -14,6 +14,10 @@ struct PlannedPiece {
   double duration_s = 0.0;                 // [s] > 0
 };
 
+/// The attitude in which a quadrotor accelerates so: its z axis along acceleration plus gravity,
+/// its heading as given. Level in free fall. @param acceleration_map [m/s^2] finite
+Eigen::Quaterniond flat_attitude(const Vec3& acceleration_map, double yaw_rad);
+
 /// Turns a planned trajectory into a track that can be judged, by de Casteljau's algorithm, apart
 /// from the planner's own evaluation. The attitude is what a quadrotor needs for the acceleration:
 /// its z axis along acceleration plus gravity, yaw as given (Mellinger and Kumar, ICRA 2011).

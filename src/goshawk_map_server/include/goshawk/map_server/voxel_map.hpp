@@ -49,6 +49,11 @@ struct Growth {
   double inflation_m = 0.2;  // [m] the vehicle's radius plus its margin
 };
 
+/// What grows under the policy, before it does: a grid with an inflation of 0 and the flags of
+/// the grown one.
+VoxelGrid growing_voxels(const GridGeometry& geometry, const BitGrid& occupied,
+                         const BitGrid& known, UnknownPolicy unknown, std::uint64_t version);
+
 /// Applies the policy and grows the obstacles (goshawk::inflate).
 /// @return invalid_input for a bad inflation; map_empty where no voxel stays free
 Result<VoxelGrid> make_voxel_grid(const RawVoxels& raw, const Growth& growth,

@@ -20,6 +20,7 @@ class BucketQueue {
     std::uint32_t node;
     std::uint32_t next;
     std::uint32_t rest;  // key - the bucket's lowest key
+    std::uint32_t note;
   };
   static constexpr int kShift = 17;
   static constexpr std::uint32_t kNone = 0xFFFFFFFF;
@@ -37,12 +38,13 @@ class BucketQueue {
     last_ = kNone;
   }
 
-  void push(std::uint32_t node, Cost key) {
+  /// @param note for whoever takes it
+  void push(std::uint32_t node, Cost key, std::uint32_t note) {
     const Cost above = std::max(key - base_, Cost{0});
     const auto bucket = std::uint32_t(above >> kShift);
     if (bucket >= heads_.size()) grow(bucket);
     const std::uint32_t slot = take_slot();
-    entries_[slot] = {node, heads_[bucket], std::uint32_t(above & ((Cost{1} << kShift) - 1))};
+    entries_[slot] = {node, heads_[bucket], std::uint32_t(above & ((Cost{1} << kShift) - 1)), note};
     heads_[bucket] = slot;
     used_[bucket >> 6] |= std::uint64_t{1} << (bucket & 63);
     first_ = std::min(first_, bucket);

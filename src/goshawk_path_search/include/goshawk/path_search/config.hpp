@@ -5,23 +5,45 @@
 #include <type_traits>
 
 #include "goshawk/core/parameter.hpp"
+#include "goshawk/core/result.hpp"
 
 namespace goshawk::path_search {
 
-/// The parameters of the stage. The defaults suit a corridor builder behind it.
+/// The parameters of the stage. The defaults suit a corridor builder behind it: the shortest path,
+/// the ends as they are, unknown space as the map has it.
 struct Config {
   std::string planner = "jastar";
   std::string corner_rule = "no_squeeze";
   std::string pruning = "shortest";
+  double time_limit_s = 10.0;
+
+  double move_within_m = 0.0;
+  bool nearest_reachable = false;
+  std::string search_box;
+
+  double z_weight = 0.0;
+  std::string unknown = "as_mapped";
+  double unknown_weight = 1.0;
+  double clearance_m = 0.0;
+  double clearance_weight = 1.0;
+
+  int max_iterations = 5000;
+  double step_m = 1.0;
+  int seed = 1;
 };
+
+/// Everything that is out of range or not a choice, in one sentence each.
+/// @return invalid_parameter
+Status check(const Config& config);
 
 template <typename Self, typename Visitor>
 requires std::same_as<std::remove_const_t<Self>, Config>
 void describe(Self& c, Visitor&& visit) {
   visit("planner", c.planner, "",
         "grid search: jastar (fastest, exact), astar (octile heuristic), astar_euclidean, "
-        "astar_manhattan (fast, not exact) or dijkstra",
-        OneOf{{"jastar", "astar", "astar_euclidean", "astar_manhattan", "dijkstra"}});
+        "astar_manhattan (fast, not exact) or dijkstra; by sampling (OMPL): rrt, rrtstar or prm",
+        OneOf{{"jastar", "astar", "astar_euclidean", "astar_manhattan", "dijkstra", "rrt",
+               "rrtstar", "prm"}});
   visit("corner_rule", c.corner_rule, "",
         "no_squeeze: every voxel of the box that a move spans is free, as a corridor needs; "
         "squeeze: only the target voxel is, so paths may touch obstacle edges",
@@ -30,6 +52,34 @@ void describe(Self& c, Visitor&& visit) {
         "waypoints: shortest (shortest polyline over the path's own nodes), greedy (farthest "
         "visible node) or none",
         OneOf{{"shortest", "greedy", "none"}});
+  visit("time_limit_s", c.time_limit_s, "s",
+        "longest search; a request's own deadline may be shorter", Range::positive(1e6));
+  visit("move_within_m", c.move_within_m, "m",
+        "a start or goal in an obstacle is moved to the nearest free voxel up to this far; 0: it "
+        "is refused",
+        Range{0.0, 100.0});
+  visit("nearest_reachable", c.nearest_reachable, "",
+        "where every goal is cut off, plan to the reachable voxel nearest to one", Anything{});
+  visit("search_box", c.search_box, "m",
+        "limits the search: x0,y0,z0,x1,y1,z1 in frame map; empty: the whole map", Anything{});
+  visit("z_weight", c.z_weight, "", "each metre of climb costs as much as so many metres of path",
+        Range{0.0, 1e3});
+  visit("unknown", c.unknown, "",
+        "space never measured: as_mapped, blocked, free, or costly; the last two ask for a map "
+        "that leaves it free (map_server: unknown: free)",
+        OneOf{{"as_mapped", "blocked", "free", "costly"}});
+  visit("unknown_weight", c.unknown_weight, "",
+        "where unknown is costly: a move into it costs 1 + this times its length", Range{0.0, 1e3});
+  visit("clearance_m", c.clearance_m, "m",
+        "voxels nearer than this to a blocked one cost more; 0: off", Range{0.0, 10.0});
+  visit("clearance_weight", c.clearance_weight, "",
+        "a move beside a blocked voxel costs 1 + this times its length, falling to 1 at "
+        "clearance_m",
+        Range{0.0, 1e3});
+  visit("max_iterations", c.max_iterations, "",
+        "rrt, rrtstar, prm: samples before giving up (rrt) or being content", Range{1.0, 1e8});
+  visit("step_m", c.step_m, "m", "rrt, rrtstar: longest edge of the tree", Range::positive(1e3));
+  visit("seed", c.seed, "", "rrt, rrtstar, prm: the same seed gives the same path", Range{0, 1e9});
 }
 
 }  // namespace goshawk::path_search

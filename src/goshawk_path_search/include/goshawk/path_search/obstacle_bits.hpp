@@ -48,17 +48,17 @@ class ObstacleBits {
 
   bool blocked(Node node) const { return get(axes_[0], node); }
 
-  /// The 3x3x3 block around a node.
-  MoveRules::Rows block(Node node) const {
-    MoveRules::Rows rows;
+  /// The blocked voxels of the 3x3x3 block around a node, by direction_of().
+  BlockMask block(Node node) const {
+    BlockMask blocked = 0;
     const std::int64_t first = std::int64_t{node} - 1;
     for (std::size_t r = 0; r < 9; ++r) {
       const std::int64_t p = first + offsets_[3 * r + 1];
       std::uint16_t pair;
       std::memcpy(&pair, axes_[0].bytes() + (p >> 3), sizeof pair);
-      rows[r] = std::uint8_t((pair >> (p & 7)) & 7U);
+      blocked |= BlockMask((pair >> (p & 7)) & 7U) << (3 * r);
     }
-    return rows;
+    return blocked;
   }
 
   /// The straight jump: goes on from `from` by up to kWindow - 2 voxels.

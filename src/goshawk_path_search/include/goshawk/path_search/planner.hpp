@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string_view>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "goshawk/core/bit_grid.hpp"
 #include "goshawk/core/result.hpp"
 #include "goshawk/path_search/config.hpp"
+#include "goshawk/path_search/query.hpp"
 
 namespace goshawk::path_search {
 
@@ -25,11 +27,22 @@ struct Counters {
   friend bool operator==(const Counters&, const Counters&) = default;
 };
 
-/// A path over the 26-neighbour grid.
+/// A path through the grid.
 struct VoxelPath {
   std::vector<Index3> cells;  // every voxel from start to goal, consecutive ones are neighbours
-  double cost_voxels = 0.0;   // length in voxel edges: a move costs 1, sqrt(2) or sqrt(3)
+  std::vector<Vec3> points;   // [voxel units] of a sampling planner instead: a free polyline
+  double cost_voxels = 0.0;   // what the search minimises; plain: length in voxel edges
+  std::size_t goal = 0;       // which of the query's goals was reached
   Counters counters;
+
+  /// Keeps the memory.
+  void clear() {
+    cells.clear();
+    points.clear();
+    cost_voxels = 0.0;
+    goal = 0;
+    counters = {};
+  }
 };
 
 /// A search over a voxel grid. Implementations are deterministic; one object is for one thread.
@@ -43,20 +56,34 @@ class GridPlanner {
   /// Takes over the obstacles; `blocked` is not kept. The same size as before costs one pass over
   /// the words and work for each voxel that differs; a new size allocates. A map that cannot be
   /// searched (empty, or more than 2^32 voxels) is reported by search().
-  virtual void set_map(const BitGrid& blocked) = 0;
+  void set_map(const BitGrid& blocked) { set_map(blocked, nullptr); }
+  /// @param costly of the same size: voxels that Weights::unknown is for; null for none. Planners
+  /// without weights ignore it
+  virtual void set_map(const BitGrid& blocked, const BitGrid* costly) = 0;
 
-  /// @param start, goal voxels of the map
-  /// @param path overwritten; its capacity is reused, so that a repeated query allocates nothing
+  /// @param path overwritten; its capacity is reused, so that a repeated query allocates nothing.
+  /// After a failure its counters stand
   /// @return no_map, map_too_large, start_outside, start_occupied, goal_outside, goal_occupied,
-  /// no_path, or solver_failed where the path would be longer than four million voxels
-  virtual Status search(Index3 start, Index3 goal, VoxelPath& path) = 0;
+  /// no_path, deadline_exceeded, cancelled, invalid_input for no goals at all, or solver_failed
+  /// where the path would be longer than four million voxels
+  virtual Status search(const GridQuery& query, VoxelPath& path) = 0;
 
-  /// The same, with a path of its own.
+  /// The same from voxel to voxel, for as long as it takes.
+  Status search(Index3 start, Index3 goal, VoxelPath& path);
   Result<VoxelPath> search(Index3 start, Index3 goal);
 };
 
-/// @return the planner that the configuration names, or invalid_parameter
-Result<std::unique_ptr<GridPlanner>> make_planner(const Config& config);
+/// What every planner asks of a query before it searches. @return the codes of search()
+Status check_ends(const GridQuery& query, Index3 size,
+                  const std::function<bool(Index3)>& is_blocked);
+
+/// no_path, in a sentence.
+Error no_way(const GridQuery& query);
+
+/// @param resolution_m [m] of the maps that come; lengths in the configuration are scaled by it
+/// @return the planner that the configuration names; with weights, one that is exact about them.
+/// invalid_parameter where the configuration is wrong, or asks for what that planner cannot do
+Result<std::unique_ptr<GridPlanner>> make_planner(const Config& config, double resolution_m = 0.2);
 
 /// @return invalid_parameter for a word that is not a corner rule
 Result<CornerRule> parse_corner_rule(std::string_view word);

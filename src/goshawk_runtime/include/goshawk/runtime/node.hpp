@@ -8,6 +8,7 @@
 
 #include "goshawk/runtime/clock.hpp"
 #include "goshawk/runtime/context.hpp"
+#include "goshawk/runtime/lock_step.hpp"
 #include "goshawk/runtime/message_type.hpp"
 #include "goshawk/runtime/parameters.hpp"
 #include "goshawk/runtime/qos.hpp"
@@ -74,18 +75,34 @@ class Node {
 
   const std::string& name() const { return name_; }
   std::string full_name() const;
-  std::int64_t now_ns() const { return clock_->now_ns(); }
+  /// [ns] of the clock, or of simulated time
+  std::int64_t now_ns() const;
   spdlog::logger& log() { return *log_; }
 
+  /// Also turns to simulated time or lock step, where the user asks for it.
   /// @throws StartupFault that lists every fault
   template <typename Config>
-  Config parameters() const {
+  Config parameters() {
     auto source = args_.parameters_of(name_);
     if (!source) throw StartupFault(source.error());
-    auto config = read_parameters<Config>(*source, name_);
+    TimeParameters time;
+    auto config = read_parameters<Config>(*source, name_, &time);
     if (!config) throw StartupFault(config.error());
+    if (time.lock_step) {
+      run_in_lock_step();
+    } else if (time.use_sim_time) {
+      use_simulated_time();
+    }
     return *std::move(config);
   }
+
+  /// From here on now_ns() and timers follow /clock; 0 before the first message on it.
+  void use_simulated_time();
+  /// From here on the node runs in turns that a leader gives it; @see LockStep.
+  void run_in_lock_step();
+  /// From here on spin() makes simulated time, step by step, for the followers. Before the first
+  /// step every follower must have answered. One that falls silent is waited for.
+  void lead_lock_step(const LockStep& lock_step);
 
   template <typename Message>
   Publisher<Message> advertise(std::string_view topic, Qos qos) {
@@ -108,7 +125,8 @@ class Node {
   void subscribe_raw(std::string_view topic, const MessageType& type, Qos qos,
                      RawCallback callback);
 
-  /// Calls back every period_s from now on; a call that comes late is not made up for.
+  /// Calls back every period_s from now on, by the machine's steady clock or by simulated time; a
+  /// call that comes late is not made up for.
   void every(double period_s, std::function<void()> callback);
 
   /// Serves callbacks until stop(). An exception in a callback is a bug: it is logged with the
@@ -122,6 +140,7 @@ class Node {
  private:
   std::shared_ptr<detail::Writer> make_writer(std::string_view topic, const MessageType& type,
                                               Qos qos);
+  void take_turn(const void* message);
   struct Impl;
 
   std::string name_;

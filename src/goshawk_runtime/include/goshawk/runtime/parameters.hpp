@@ -128,13 +128,25 @@ constexpr const char* type_name() {
 
 }  // namespace detail
 
+/// What every node has beside its own parameters.
+struct TimeParameters {
+  bool use_sim_time = false;  // now and timers follow /clock, as in ROS
+  bool lock_step = false;     // the node runs in turns: its plant names it in lock_step_nodes
+};
+
 /// Fills a config struct, strictly: an unknown name, a wrong type or a value out of range is a
 /// fault, and the error (invalid_parameter) lists all of them, one a line.
+/// @param time where the parameters of every node go, if they are wanted
 template <typename Config>
-Result<Config> read_parameters(const ParameterSource& source, std::string_view node_name) {
+Result<Config> read_parameters(const ParameterSource& source, std::string_view node_name,
+                               TimeParameters* time = nullptr) {
   Config config;
   detail::Reader reader(source);
   describe(config, reader);
+  TimeParameters ignored;
+  TimeParameters& t = time != nullptr ? *time : ignored;
+  reader("use_sim_time", t.use_sim_time, "", "", Anything{});
+  reader("lock_step", t.lock_step, "", "", Anything{});
   if (auto status = reader.finish(node_name); !status) return status.error();
   return config;
 }

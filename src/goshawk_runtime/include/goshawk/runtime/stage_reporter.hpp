@@ -28,7 +28,9 @@ class StageReporter {
   void ready(const std::string& message);
   void fault(const Error& error);
   /// About one request.
-  void answered(std::uint64_t request_id, Timing timing, Counters counters = {});
+  /// @param note what the asker should know of the answer, or nothing
+  void answered(std::uint64_t request_id, Timing timing, Counters counters = {},
+                const std::string& note = "");
   void failed(std::uint64_t request_id, const Error& error, Timing timing = {});
 
  private:

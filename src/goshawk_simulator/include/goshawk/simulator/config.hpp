@@ -5,6 +5,7 @@
 
 #include "goshawk/core/parameter.hpp"
 #include "goshawk/simulator/attitude_controller.hpp"
+#include "goshawk/simulator/sensor.hpp"
 #include "goshawk/simulator/vehicle_parameters.hpp"
 
 namespace goshawk::simulator {
@@ -14,6 +15,10 @@ struct Config {
   AttitudeGains attitude;
   double command_timeout_s = 0.1;
   double failsafe_tilt_rad = 0.87;
+  double failsafe_hold_s = 10.0;
+  double land_speed_m_s = 0.3;
+  double land_height_m = 0.1;
+  SensorParameters sensor;
   double wind_x_m_s = 0.0;
   double wind_y_m_s = 0.0;
   double wind_z_m_s = 0.0;
@@ -21,6 +26,23 @@ struct Config {
   double gust_time_s = 1.0;
   int gust_seed = 1;
 };
+
+template <typename Self, typename Visitor>
+requires std::same_as<std::remove_const_t<Self>, SensorParameters>
+void describe(Self& s, Visitor&& visit) {
+  visit("position_noise_m", s.position_noise_m, "m",
+        "odometry: standard deviation of the white noise on each axis of the position",
+        Range{0.0, 10.0});
+  visit("velocity_noise_m_s", s.velocity_noise_m_s, "m/s", "odometry: likewise of the velocity",
+        Range{0.0, 10.0});
+  visit("attitude_noise_rad", s.attitude_noise_rad, "rad",
+        "odometry: likewise of the attitude, about each body axis", Range{0.0, 0.5});
+  visit("body_rate_noise_rad_s", s.body_rate_noise_rad_s, "rad/s",
+        "odometry: likewise of the body rates", Range{0.0, 10.0});
+  visit("odometry_delay_s", s.delay_s, "s",
+        "how old odometry is when it is published; its stamp says so", Range{0.0, 1.0});
+  visit("sensor_seed", s.seed, "", "the same seed, the same noise", Range{0.0, 2147483647.0});
+}
 
 template <typename Self, typename Visitor>
 requires std::same_as<std::remove_const_t<Self>, Config>
@@ -63,6 +85,12 @@ void describe(Self& c, Visitor&& visit) {
         Range{0.01, 10.0});
   visit("failsafe_tilt_rad", c.failsafe_tilt_rad, "rad", "steepest tilt of that braking",
         Range{0.05, 1.2});
+  visit("failsafe_hold_s", c.failsafe_hold_s, "s",
+        "how long it holds, still without commands, before it lands by itself", Range{0.0, 3600.0});
+  visit("land_speed_m_s", c.land_speed_m_s, "m/s", "its descent", Range{0.05, 2.0});
+  visit("land_height_m", c.land_height_m, "m",
+        "height in the map at which a landing ends: the ground, plus the legs", Anything{});
+  describe(c.sensor, visit);
   visit("wind_x_m_s", c.wind_x_m_s, "m/s", "constant wind towards map x", wind);
   visit("wind_y_m_s", c.wind_y_m_s, "m/s", "constant wind towards map y", wind);
   visit("wind_z_m_s", c.wind_z_m_s, "m/s", "constant wind upwards", wind);

@@ -1,15 +1,10 @@
 #pragma once
 
 #include "goshawk/simulator/mixer.hpp"
+#include "goshawk/simulator/plant_model.hpp"
 #include "goshawk/simulator/vehicle_parameters.hpp"
 
 namespace goshawk::simulator {
-
-/// Twelve states of the body and four of the rotors.
-struct PlantState {
-  RigidBodyState body;
-  Eigen::Vector4d rotor_speed_rad_s = Eigen::Vector4d::Zero();
-};
 
 /// The equations of motion (thesis, Problem Formulation; Newton and Euler, quaternions in place of
 /// Euler angles, which are singular at 90 degrees of pitch) with first-order motors, rotor drag

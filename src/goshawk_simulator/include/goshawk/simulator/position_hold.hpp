@@ -18,6 +18,9 @@ class PositionHold {
   /// Hover at this very point.
   void engage_at(const Vec3& position_map, double yaw_rad);
 
+  /// Moves the place where it hovers down by step_m, to floor_map_m at the lowest.
+  void lower(double step_m, double floor_map_m);
+
   ThrustAttitude step(const RigidBodyState& state);
 
   bool braking() const { return braking_; }

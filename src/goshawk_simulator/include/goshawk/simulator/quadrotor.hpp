@@ -3,30 +3,35 @@
 #include <cstdint>
 
 #include "goshawk/simulator/config.hpp"
-#include "goshawk/simulator/plant.hpp"
+#include "goshawk/simulator/mixer.hpp"
+#include "goshawk/simulator/plant_model.hpp"
 #include "goshawk/simulator/position_hold.hpp"
+#include "goshawk/simulator/sensor.hpp"
 #include "goshawk/simulator/wind.hpp"
 
 namespace goshawk::simulator {
 
-/// Who flies: the commands that come in, or the onboard controller by itself.
-enum class Control { commanded, failsafe };
+/// Who flies: the commands that come in, or the onboard controller by itself: it holds, then lands.
+enum class Control { commanded, failsafe, landing };
 
 /// A simulated quadrotor with its autopilot: plant, onboard attitude loop and failsafe, all at
 /// 1 kHz. It hovers from the start; commands take over; when none came for command_timeout_s it
-/// brakes and hovers where that ends, until commands come again. Same calls, same bits.
+/// brakes and hovers where that ends, and after failsafe_hold_s it lands there, until commands come
+/// again. Before the first command it only hovers. Same calls, same bits.
 ///
 ///     auto quadrotor = Quadrotor::create(config);
 ///     quadrotor->reset({3, 0, 1}, 0.0);
 ///     quadrotor->command(tracker_output);   // at any rate
 ///     quadrotor->advance(0.004);
-///     publish(quadrotor->state());
+///     publish(quadrotor->measure());
 class Quadrotor {
  public:
   static constexpr std::int64_t kStep_ns = 1'000'000;
 
+  /// @param make_plant what is flown: our own rigid body, or another
   /// @return invalid_parameter with every fault of the configuration
-  static Result<Quadrotor> create(const Config& config);
+  static Result<Quadrotor> create(const Config& config,
+                                  const PlantFactory& make_plant = make_rigid_body);
 
   /// Hover at rest with the motors at hover speed; commands, failsafe and gusts begin anew, time
   /// runs on. @return invalid_input when not finite
@@ -43,31 +48,40 @@ class Quadrotor {
   /// @param dt_s [s] in [0, 3600], rounded to a nanosecond @return invalid_input else
   Status advance(double dt_s);
 
-  const RigidBodyState& state() const { return state_.body; }
-  Vec3 acceleration_map() const { return plant_.acceleration_map(state_, wind_.velocity_map()); }
-  Eigen::Vector4d rotor_thrust_n() const { return plant_.rotor_thrust_n(state_.rotor_speed_rad_s); }
+  /// The truth.
+  const RigidBodyState& state() const { return plant_->state().body; }
+  /// What the estimator says: late and noisy, as configured. Draws noise each time it is asked.
+  Measurement measure() { return sensor_.measure(); }
+  Vec3 acceleration_map() const { return plant_->acceleration_map(wind_.velocity_map()); }
+  Eigen::Vector4d rotor_thrust_n() const;
   Vec3 wind_map() const { return wind_.velocity_map(); }
   /// [ns] simulated time since creation: whole steps only
   std::int64_t time_ns() const { return time_ns_; }
   Control control() const { return control_; }
   const Config& config() const { return config_; }
+  const char* plant_name() const { return plant_->name(); }
 
  private:
-  explicit Quadrotor(const Config& config);
+  Quadrotor(const Config& config, const PlantFactory& make_plant);
   void step();
   ThrustAttitude onboard_target();
+  void watch_commands();
 
   Config config_;
-  Plant plant_;
+  std::unique_ptr<PlantModel> plant_;
+  Mixer mixer_;
+  Eigen::Matrix3d inertia_kg_m2_;
   Wind wind_;
+  Sensor sensor_;
   PositionHold hold_;
-  PlantState state_;
   ThrustAttitude command_;
   Control control_ = Control::failsafe;
   std::int64_t time_ns_ = 0;
   std::int64_t remainder_ns_ = 0;
   std::int64_t command_time_ns_ = 0;
   std::int64_t command_timeout_ns_;
+  std::int64_t landing_ns_;  // after the last command
+  bool was_commanded_ = false;
 };
 
 }  // namespace goshawk::simulator

@@ -23,8 +23,6 @@ class Wind {
   Vec3 velocity_map() const { return mean_map_ + gust_map_; }
 
  private:
-  double normal();
-
   Vec3 mean_map_;
   Vec3 gust_map_ = Vec3::Zero();
   double deviation_m_s_;

@@ -22,22 +22,26 @@ struct Config {
   double linear_drag_z_kg_s = 0.15;
   double actuation_delay_s = 0.02;
 
-  double position_xy_1_s2 = 9.0;
-  double position_z_1_s2 = 12.0;
-  double velocity_xy_1_s = 5.0;
-  double velocity_z_1_s = 6.0;
+  double position_xy_1_s2 = 16.0;
+  double position_z_1_s2 = 20.0;
+  double velocity_xy_1_s = 6.8;
+  double velocity_z_1_s = 7.8;
   double max_feedback_m_s2 = 6.0;
-  double disturbance_bandwidth_rad_s = 4.0;
+  double disturbance_bandwidth_rad_s = 6.0;
   double max_disturbance_m_s2 = 4.0;
   double max_yaw_rate_rad_s = 1.0;
   double max_body_rate_rad_s = 10.0;
 
   double start_tolerance_m = 0.3;
   double start_velocity_tolerance_m_s = 0.5;
-  double max_error_m = 0.5;
+  double error_allowance_m = 0.05;
   double max_jump_m = 0.5;
   double odometry_timeout_s = 0.1;
   double brake_acceleration_m_s2 = 2.0;
+  double navigator_timeout_s = 2.0;
+  double land_after_s = 10.0;
+  double land_speed_m_s = 0.3;
+  double land_height_m = 0.1;
 };
 
 template <typename Self, typename Visitor>
@@ -86,8 +90,9 @@ void describe(Self& c, Visitor&& visit) {
         Range::positive(10.0));
   visit("start_velocity_tolerance_m_s", c.start_velocity_tolerance_m_s, "m/s",
         "likewise for its velocity", Range::positive(10.0));
-  visit("max_error_m", c.max_error_m, "m",
-        "beyond this tracking error tracking is lost: the reference brakes along its path",
+  visit("error_allowance_m", c.error_allowance_m, "m",
+        "tracking error that the safety margin covers (margin_m of map_server); beyond it the "
+        "reference brakes along its path",
         Range::positive(100.0));
   visit("max_jump_m", c.max_jump_m, "m",
         "odometry that moves this much more than its velocity explains has jumped",
@@ -96,6 +101,16 @@ void describe(Self& c, Visitor&& visit) {
         Range{0.001, 10.0});
   visit("brake_acceleration_m_s2", c.brake_acceleration_m_s2, "m/s^2",
         "deceleration of the reference when it brakes along its path", Range{0.1, 20.0});
+  visit("navigator_timeout_s", c.navigator_timeout_s, "s",
+        "a navigator that was heard once and then is silent for this long is lost",
+        Range{0.1, 3600.0});
+  visit("land_after_s", c.land_after_s, "s",
+        "without a navigator: how long the vehicle holds at rest before it lands",
+        Range{0.0, 3600.0});
+  visit("land_speed_m_s", c.land_speed_m_s, "m/s", "fastest descent of a landing",
+        Range{0.05, 2.0});
+  visit("land_height_m", c.land_height_m, "m",
+        "height in the map at which a landing ends: the ground, plus the legs", Anything{});
 }
 
 /// @return invalid_parameter with every fault: out of range, and a vehicle whose thrust bounds do

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "goshawk/tracker/committed_trajectory.hpp"
@@ -13,14 +14,16 @@ enum class Mode {
   hold,    // at a point: where the first odometry was, or where a trajectory or braking ended
   follow,  // on a trajectory
   brake,   // slowing down to a stop, along the trajectory's path
+  land,    // straight down from where it held, the navigator being lost; and on the ground
 };
 std::string_view to_string(Mode mode);
 
 struct TrackingStatus {
   Mode mode = Mode::idle;
-  Error fault{ErrorCode::ok, ""};   // ok, or why the trajectory is not followed as planned
-  std::uint64_t trajectory_id = 0;  // the one followed or come to rest on; 0: none yet
-  double progress_s = 0.0;          // along it
+  Error fault{ErrorCode::ok, ""};        // ok, or why the trajectory is not followed as planned
+  std::uint64_t trajectory_id = 0;       // the one followed or come to rest on; 0: none yet
+  std::uint64_t lost_trajectory_id = 0;  // the one that will not be flown to its end
+  double progress_s = 0.0;               // along it
   double duration_s = 0.0;
   int queued = 0;            // trajectories accepted whose time has not come
   FlatState reference;       // where the vehicle should be
@@ -38,6 +41,8 @@ struct TrackingStatus {
 ///     if (command) publish(*command); else report(command.error());  // silence is what makes
 ///                                                                    // the vehicle brake
 ///     Status answer = tracker->accept(committed, now_ns);            // whenever one comes
+///     tracker->heard_navigator(now_ns);                              // at each sign of its life
+///     tracker->watch(now_ns);                                        // regularly, odometry or not
 class Tracker {
  public:
   /// @return invalid_parameter with every fault of the configuration
@@ -65,7 +70,16 @@ class Tracker {
     return step(state, now_ns, now_ns);
   }
 
-  /// As of the last step().
+  /// The navigator lives. Only one that was heard can be missed; a landing ends when it is back.
+  void heard_navigator(std::int64_t now_ns);
+
+  /// What must be noticed when nothing comes in. Odometry older than its timeout is lost: the
+  /// reference brakes along its path, and the vehicle, which gets no command, holds by itself. A
+  /// silent navigator is lost: what is committed is flown to its end and held there; after
+  /// land_after_s at rest the vehicle lands. Each is a fault with a code. Included in step().
+  void watch(std::int64_t now_ns);
+
+  /// As of the last step() or watch().
   TrackingStatus status() const;
 
  private:
@@ -75,9 +89,14 @@ class Tracker {
   Status check_start(const CommittedTrajectory& committed, std::int64_t now_ns) const;
   FlatState reference_at(std::int64_t time_ns) const;
   void hold_here(const RigidBodyState& state);
-  void take_in(const RigidBodyState& state, std::int64_t stamp_ns);
+  void take_in(const RigidBodyState& state, std::int64_t stamp_ns, std::int64_t now_ns);
   void switch_trajectories(std::int64_t now_ns);
   void watch_error(std::int64_t now_ns);
+  void watch_odometry(std::int64_t now_ns);
+  void watch_navigator(std::int64_t now_ns);
+  void land(std::int64_t now_ns);
+  void lose(std::int64_t now_ns, const std::string& why);
+  std::uint64_t followed_id() const;
   double turn(std::int64_t now_ns);
   double wanted_yaw() const;
 
@@ -94,8 +113,13 @@ class Tracker {
   double first_yaw_rad_ = 0.0;
   double yaw_rad_ = 0.0;
 
-  bool lost_ = false;  // until another trajectory is switched to
-  Error fault_{ErrorCode::ok, ""};
+  Error lost_{ErrorCode::ok, ""};  // why, until another trajectory is switched to
+  std::uint64_t lost_id_ = 0;
+  Error refused_{ErrorCode::ok, ""};      // the newest odometry, or too far from where it holds
+  Error deserted_{ErrorCode::ok, ""};     // by the navigator, until it is heard again
+  std::optional<std::int64_t> heard_ns_;  // the navigator's last sign of life
+  std::optional<std::int64_t> rest_since_ns_;  // the reference's, for good
+  bool landing_ = false;
   double error_m_ = 0.0;
   double squared_error_m2_ = 0.0;
   double max_error_m_ = 0.0;

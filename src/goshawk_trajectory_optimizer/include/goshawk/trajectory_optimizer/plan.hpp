@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "goshawk/core/polytope.hpp"
@@ -15,6 +16,8 @@ struct Request {
   const FlatState& start;
   const FlatState& goal;
   const Limits& limits;
+  double duration_s = 0.0;                             // [s] when to arrive; 0: soon
+  const std::function<bool()>* out_of_time = nullptr;  // null: never
 
   /// From rest to rest, where a longer duration of the same shape is always feasible.
   bool rests() const;
@@ -25,10 +28,13 @@ struct Plan {
   std::vector<double> durations_s;  // m
   std::vector<int> polytopes;       // m: where each piece lives
   std::vector<FlatState> joints;    // m + 1
+  std::vector<double> a_factors;    // m, or none: of the acceleration limit, at most 1
   double reference_s = 0.0;         // [s] duration of the trapezoid, above zero
+  double braking_s = 0.0;           // [s] how long a start above a limit may stay above it
   bool stays = false;               // no way to go: any duration will do
 
   double duration_s() const;
+  double a_factor(std::size_t piece) const { return a_factors.empty() ? 1.0 : a_factors[piece]; }
 };
 
 /// How a moving start (or goal) is met. The hull of a piece holds what its end state alone decides,
@@ -37,6 +43,7 @@ struct Plan {
 struct Lead {
   double first_piece = 1.0;    // in longest pieces; each next one is at most twice as long
   double first_segment = 1.0;  // duration of the first segment in trapezoid durations
+  double braking = 1.0;        // of the time that a start above a limit is allowed
 };
 
 /// Cuts the trapezoid over the corridor's waypoints into pieces of at most config.piece_duration_s.

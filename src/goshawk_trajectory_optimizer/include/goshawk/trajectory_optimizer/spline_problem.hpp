@@ -29,6 +29,8 @@ struct FacePoint {
 ///   subject to  control points of pieces behind their faces
 ///               |V_j|^2 <= v_max^2 eta,  |A_j| <= a_max eta   (euclidean: second-order cones)
 ///               or the same for each component              (per_axis)
+///               or horizontally and vertically apart        (horizontal_vertical)
+///               |J_j| <= j_max (3 eta - 1) / 2, the tangent of eta^1.5 at 1
 ///
 /// over the inner joints; the first and the last are given, as affine functions of eta:
 /// joints[0] + (eta - 1) start_rate. Without scale eta is 1. Source: the thesis' Improved
@@ -36,11 +38,14 @@ struct FacePoint {
 struct SplineProblem {
   bool scale = true;
   LimitNorm norm = LimitNorm::euclidean;
+  double v_over_vertical = 1.0;  // horizontal_vertical: the horizontal limit over the vertical
+  double a_over_vertical = 1.0;
   double time_weight = 1.0;
   double jerk_weight = 1.0;
   std::vector<double> durations;  // m
   std::vector<double> v_max;      // m, of each piece
   std::vector<double> a_max;      // m
+  std::vector<double> j_max;      // m, or none: no limit on the jerk
   std::vector<Joint> joints;      // m + 1: the ends, and a guess for the others
   Joint start_rate = Joint::Zero();
   Joint goal_rate = Joint::Zero();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string_view>
 
@@ -21,6 +22,13 @@ struct Solution {
   double jerk_cost = 0.0;  // [m^2/s^5] integral of the squared jerk
 };
 
+/// What a flight may ask beyond its ends and limits.
+struct Query {
+  double duration_s = 0.0;  // [s] arrive after exactly this; 0: as fast as the limits allow
+  /// Asked before each iteration; true ends the work with deadline_exceeded. Empty: never.
+  std::function<bool()> out_of_time = {};
+};
+
 /// Fits a piecewise quintic Bezier trajectory into a corridor. Keeps its working memory between
 /// calls; no answer depends on an earlier one, and equal inputs give equal bits.
 class TrajectoryOptimizer {
@@ -33,12 +41,20 @@ class TrajectoryOptimizer {
 
   /// @param corridor frame `map`; piece k of the answer stays in the polytope that it names
   /// @param start, goal positions are the corridor's first and last waypoint (within 1 um);
-  ///   velocities and accelerations within the limits; jerk is not used
+  ///   velocities and accelerations within the limits; jerk is not used. A start above a limit is
+  ///   braked as fast as a trajectory is found for, and the certificate says how far above it is
+  ///   and until when (StartAllowance)
   /// @return a certified solution; else invalid_input, invalid_limits, corridor_disjoint,
   ///   start_infeasible (the start state breaks a limit, or leaves the corridor whatever is
-  ///   done), trajectory_infeasible or solver_failed
+  ///   done), trajectory_infeasible (also a duration that is too short), deadline_exceeded,
+  ///   not_certified (methods that do not know the corridor) or solver_failed
   Result<Solution> optimise(const Corridor& corridor, const FlatState& start, const FlatState& goal,
-                            const Limits& limits);
+                            const Limits& limits, const Query& query = {});
+
+  /// Comes to rest as soon as a trajectory is found for, anywhere ahead in a convex free space.
+  /// @param free_space frame `map`; holds the start
+  /// @return as optimise(); its only polytope is free_space
+  Result<Solution> stop(const Polytope& free_space, const FlatState& start, const Limits& limits);
 
   /// Which method answers, for reports: "bezier-scale", "bezier-fixed", "bezier-thesis".
   std::string_view implementation() const;

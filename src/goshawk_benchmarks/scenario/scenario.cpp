@@ -1,0 +1,126 @@
+// goshawk bench scenario MAP.3dmap SCEN.3dscen: do our lengths match the published ones, and how
+// long does a problem take?
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "common/measure.hpp"
+#include "goshawk/path_search/planner.hpp"
+#include "search/warframe_files.hpp"
+
+namespace goshawk::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using worlds::Problem;
+
+struct Options {
+  std::string map;
+  std::string scenario;
+  int limit = 0;
+  std::vector<std::string> planners = {"jastar", "astar"};
+  bool json = false;
+};
+
+/// The files give eight decimals.
+bool matches(double length, double published) {
+  return std::abs(length - published) <= 1e-7 + 1e-8 * published;
+}
+
+Result<Json> run_planner(const std::string& name, const BitGrid& map,
+                         const std::vector<Problem>& problems) {
+  path_search::Config config;
+  config.planner = name;
+  auto planner = path_search::make_planner(config);
+  if (!planner) return planner.error();
+  (*planner)->set_map(map);
+  path_search::VoxelPath path;
+  std::vector<double> us;
+  std::int64_t mismatches = 0;
+  double expanded = 0.0;
+  for (std::size_t k = 0; k < problems.size(); ++k) {
+    const auto begin = std::chrono::steady_clock::now();
+    const auto status = (*planner)->search(problems[k].start, problems[k].goal, path);
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+    us.push_back(1e6 * took.count());
+    expanded += double(path.counters.expanded);
+    if (status && matches(path.cost_voxels, problems[k].length_voxels)) continue;
+    if (++mismatches > 3) continue;
+    std::fprintf(stderr, "%s, problem %zu: %s\n", name.c_str(), k + 1,
+                 status ? ("length " + std::to_string(path.cost_voxels) + ", published " +
+                           std::to_string(problems[k].length_voxels))
+                              .c_str()
+                        : status.error().message.c_str());
+  }
+  return Json{{"planner", name},
+              {"problems", problems.size()},
+              {"mismatches", mismatches},
+              {"median_us", median(us)},
+              {"mean_expanded", expanded / double(problems.size())}};
+}
+
+int fail_with(const Error& error, bool json) {
+  if (json) {
+    const Json object{
+        {"ok", false}, {"code", std::string(to_string(error.code))}, {"message", error.message}};
+    std::printf("%s\n", object.dump(1, ' ', false, Json::error_handler_t::replace).c_str());
+  } else {
+    std::fprintf(stderr, "goshawk bench scenario: %s\n", error.message.c_str());
+  }
+  return 1;
+}
+
+int run(const Options& o) {
+  const auto map = worlds::read_voxel_map(o.map);
+  if (!map) return fail_with(map.error(), o.json);
+  auto problems = worlds::read_scenario(o.scenario);
+  if (!problems) return fail_with(problems.error(), o.json);
+  if (o.limit > 0 && std::size_t(o.limit) < problems->size())
+    problems->resize(std::size_t(o.limit));
+  Json rows = Json::array();
+  std::int64_t mismatches = 0;
+  for (const std::string& name : o.planners) {
+    const auto row = run_planner(name, *map, *problems);
+    if (!row) return fail_with(row.error(), o.json);
+    mismatches += (*row)["mismatches"].get<std::int64_t>();
+    rows.push_back(*row);
+    if (o.json) continue;
+    std::printf("%-16s %lld problems, %lld mismatches, median %.1f us, %.0f nodes\n", name.c_str(),
+                (*row)["problems"].get<long long>(), (*row)["mismatches"].get<long long>(),
+                (*row)["median_us"].get<double>(), (*row)["mean_expanded"].get<double>());
+  }
+  if (o.json) {
+    const Json object{{"bench", "scenario"},
+                      {"map", o.map},
+                      {"scenario", o.scenario},
+                      {"rule", "no_squeeze"},
+                      {"problems", problems->size()},
+                      {"mismatches", mismatches},
+                      {"median_us", rows[0]["median_us"]},
+                      {"rows", rows}};
+    std::printf("%s\n", object.dump(1, ' ', false, Json::error_handler_t::replace).c_str());
+  }
+  return mismatches == 0 ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace goshawk::bench
+
+int main(int argc, char** argv) {
+  goshawk::bench::Options o;
+  CLI::App app("Public voxel problems: lengths against the published ones, and times.",
+               "goshawk bench scenario");
+  app.add_option("map", o.map, "MAP.3dmap")->required();
+  app.add_option("scenario", o.scenario, "SCEN.3dscen")->required();
+  app.add_option("--limit", o.limit, "only the first N problems")->check(CLI::PositiveNumber);
+  app.add_option("--planner", o.planners, "which, one or several")->capture_default_str();
+  app.add_flag("--json", o.json, "one JSON object on standard output");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? 0 : 2;
+  }
+  return goshawk::bench::run(o);
+}

@@ -1,0 +1,18 @@
+#include "parts.hpp"
+
+namespace {
+
+void run(goshawk::bench::Report& report) {
+  goshawk::bench::measure_flights(report);
+  goshawk::bench::measure_cost(report);
+  goshawk::bench::record_curve(report);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return goshawk::bench::bench_main(
+      argc, argv, "trajectory",
+      "Planners of the thesis' Table 3 and ours: durations, speeds, safety, time of each stage.",
+      run);
+}

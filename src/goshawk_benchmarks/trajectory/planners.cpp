@@ -1,0 +1,113 @@
+#include "planners.hpp"
+
+#include <chrono>
+#include <cmath>
+
+#include "goshawk/trajectory_optimizer/rivals.hpp"
+
+namespace goshawk::bench {
+namespace {
+
+template <typename Work>
+auto timed(double& ms, Work&& work) {
+  const auto begin = std::chrono::steady_clock::now();
+  auto result = work();
+  ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+  return result;
+}
+
+FlatState at_rest(const Vec3& position) {
+  FlatState state;
+  state.position = position;
+  return state;
+}
+
+}  // namespace
+
+const std::vector<std::string>& Planner::names() {
+  static const std::vector<std::string> kNames{"goshawk", "thesis", "ref40", "ref42"};
+  return kNames;
+}
+
+std::optional<Planner> Planner::make(const std::string& name) {
+  Planner planner;
+  planner.name_ = name;
+  path_search::Config search;
+  search.planner = name == "ref40" ? "rrtstar" : name == "ref42" ? "astar" : "jastar";
+  auto made = path_search::PathSearch::create(search);
+  if (!made) return std::nullopt;
+  planner.search_ = *std::move(made);
+  if (name == "ref40") return planner;
+  planner.builder_ = corridor_builder::CorridorBuilder::create({}).value();
+  trajectory_optimizer::Config config;
+  if (name == "thesis") config.method = "thesis";
+  if (name == "ref42") config.method = "polynomial";
+  planner.optimizer_ = trajectory_optimizer::TrajectoryOptimizer::create(config).value();
+  return planner;
+}
+
+Flight Planner::fly(const Task& task) {
+  search_->set_map(task.grid);
+  plan(task);
+  return plan(task);
+}
+
+Flight Planner::plan(const Task& task) {
+  Flight flight;
+  const auto path = timed(flight.search_ms, [&] { return search_->plan(task.start, task.goal); });
+  if (!path) {
+    flight.why = path.error().message;
+    return flight;
+  }
+  flight.path_length_m = path->pruned_length_m;
+  if (!optimizer_) {
+    auto trajectory = timed(flight.optimise_ms, [&] {
+      return trajectory_optimizer::minimum_snap(path->waypoints_map, at_rest(task.start),
+                                                at_rest(task.goal), task.limits);
+    });
+    flight.solved = trajectory.ok();
+    if (trajectory) flight.trajectory = *std::move(trajectory);
+    return flight;
+  }
+  const auto corridor =
+      timed(flight.corridor_ms, [&] { return builder_->build(*task.grid, path->waypoints_map); });
+  if (!corridor) {
+    flight.why = corridor.error().message;
+    return flight;
+  }
+  auto solution = timed(flight.optimise_ms, [&] {
+    return optimizer_->optimise(*corridor, at_rest(task.start), at_rest(task.goal), task.limits);
+  });
+  flight.solved = flight.certified = solution.ok();
+  if (!solution) flight.why = solution.error().message;
+  if (solution) flight.trajectory = std::move(solution->trajectory);
+  return flight;
+}
+
+bool is_safe(const Trajectory& trajectory, const VoxelGrid& grid) {
+  constexpr double kStep_s = 0.005;
+  constexpr double kTouch_m = 1e-6;
+  const auto blocked = [&](const Vec3& p) {
+    const auto voxel = grid.geometry.index_of(p);
+    return !voxel || grid.occupied.test(*voxel);
+  };
+  // Inside an obstacle, and not only on its face, where every neighbour of the point is inside.
+  const auto inside = [&](const Vec3& p) {
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vec3 step((corner & 1) != 0 ? kTouch_m : -kTouch_m,
+                      (corner & 2) != 0 ? kTouch_m : -kTouch_m,
+                      (corner & 4) != 0 ? kTouch_m : -kTouch_m);
+      if (!blocked(p + step)) return false;
+    }
+    return true;
+  };
+  for (const BezierPiece& piece : trajectory.pieces) {
+    const int steps = int(std::ceil(piece.duration_s / kStep_s));
+    for (int i = 0; i <= steps; ++i) {
+      if (inside(piece.sample(piece.duration_s * i / steps).position)) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace goshawk::bench

@@ -1,0 +1,120 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <deque>
+#include <fastdds/dds/core/condition/GuardCondition.hpp>
+#include <fastdds/dds/core/condition/WaitSet.hpp>
+#include <fastdds/dds/subscriber/DataReader.hpp>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "context_impl.hpp"
+#include "goshawk/runtime/node.hpp"
+#include "message_type_impl.hpp"
+
+namespace goshawk::runtime {
+
+using Steady = std::chrono::steady_clock;
+
+struct Subscription {
+  dds::DataReader* reader = nullptr;
+  std::string topic;
+  dds::TypeSupport type;
+  void* object = nullptr;  // one, used again for every message
+  Node::RawCallback callback;
+  std::uint64_t undecoded = 0;
+};
+
+struct Timer {
+  std::int64_t period_ns = 0;
+  std::int64_t next_ns = 0;  // of the machine's steady clock, or of simulated time
+  std::function<void()> callback;
+};
+
+/// How a node lives with simulated time (docs/adr/0006-lock-step.md).
+struct SimulatedTime {
+  bool on = false;
+  std::int64_t now_ns = 0;  // 0: none yet
+
+  // Follower in lock step.
+  bool takes_turns = false;
+  std::unique_ptr<Subscription> turns;
+  RawPublisher turns_done;
+  std::uint64_t last_turn = 0;
+
+  // Leader of the others.
+  std::vector<std::string> followers;  // full names
+  std::vector<RawPublisher> turns_of;
+  std::unique_ptr<Subscription> answers;
+  RawPublisher clock;
+  std::int64_t step_ns = 0;
+  double speed = 0.0;
+  bool begun = false;
+  std::uint64_t turn = 0;
+  std::pair<std::string, std::uint64_t> answered;  // who, and which turn
+  Steady::time_point next_step;
+};
+
+struct Node::Impl {
+  explicit Impl(Context& c) : context(c.impl()) {
+    wait_set.attach_condition(stop);
+    turn_wait_set.attach_condition(stop);
+  }
+
+  ~Impl() {
+    for (auto& s : subscriptions) {
+      wait_set.detach_condition(s->reader->get_statuscondition());
+      close(*s);
+    }
+    for (auto* s : {time.turns.get(), time.answers.get()}) {
+      if (s == nullptr) continue;
+      turn_wait_set.detach_condition(s->reader->get_statuscondition());
+      close(*s);
+    }
+  }
+
+  Context::Impl& context;
+  dds::GuardCondition stop;
+  std::atomic<bool> stopping = false;
+  dds::WaitSet wait_set;
+  dds::WaitSet turn_wait_set;  // of turns and their answers alone: all else waits meanwhile
+  dds::ConditionSeq active;
+  std::vector<std::unique_ptr<Subscription>> subscriptions;
+  std::deque<Timer> timers;  // a callback may add one: elements stay where they are
+  bool more = false;         // the last pass left messages behind
+  SimulatedTime time;
+
+  std::unique_ptr<Subscription> open(const Node& node, const std::string& topic,
+                                     const MessageType& type, Qos qos, Node::RawCallback callback);
+  void close(Subscription& subscription) {
+    context.subscriber->delete_datareader(subscription.reader);
+    subscription.type.delete_data(subscription.object);
+  }
+  /// [ns] what timers go by
+  std::int64_t timer_now_ns() const {
+    return time.on ? time.now_ns
+                   : std::chrono::nanoseconds(Steady::now().time_since_epoch()).count();
+  }
+  void set_time(std::int64_t now_ns);
+  void wait(double timeout_s);
+  /// @return whether a turn, or an answer to one, came within timeout_s
+  bool wait_for_turn(Subscription& subscription, double timeout_s);
+  void run_due_timers(const Node& node);
+  /// @return messages taken, at most so many that a flood starves nobody
+  int take_some(const Node& node, Subscription& subscription);
+  /// Takes until nothing is left.
+  void drain(const Node& node);
+  void follow(const Node& node, double timeout_s);
+  void lead(const Node& node);
+  bool give_turn(const Node& node, std::size_t follower);
+  void call_the_roll(const Node& node);
+  /// An exception is a bug of the component: said, then left to end the process.
+  template <typename Callback, typename... Arguments>
+  void call(const Node& node, const std::string& what, const Callback& callback,
+            const Arguments&... arguments);
+};
+
+}  // namespace goshawk::runtime

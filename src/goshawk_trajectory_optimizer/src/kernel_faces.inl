@@ -1,0 +1,139 @@
+// The faces of the polytopes: linear rows n.y - offset + s = 0 on a point y of one joint.
+
+GOSHAWK_INLINE Lanes point_of(const Lanes* joint, const double* map) {
+  return map[0] * joint[0] + map[1] * joint[1] + map[2] * joint[2];
+}
+
+// A sum over rows in four lanes each, to be added up.
+struct FaceSums {
+  Lanes g[3] = {}, pull[3] = {}, w[6] = {};
+};
+
+GOSHAWK_INLINE void linearise_face(FaceLanes& f, const Lanes* y, FaceSums& to, Lanes& gap,
+                                   Lanes& proof, Lanes& worst, Lanes& outside) {
+  f.residual = f.nx * y[0] + f.ny * y[1] + f.nz * y[2] - f.offset + f.s;
+  f.inverse_s = 1.0 / f.s;
+  f.weight = f.z * f.inverse_s;
+  gap += f.s * f.z;
+  proof += f.z * f.residual;
+  worst = larger(worst, magnitude(f.residual));
+  outside = larger(outside, f.residual - f.s);
+  const Lanes pull = f.weight * f.residual;
+  const Lanes wx = f.weight * f.nx, wy = f.weight * f.ny, wz = f.weight * f.nz;
+  to.g[0] += f.z * f.nx;
+  to.g[1] += f.z * f.ny;
+  to.g[2] += f.z * f.nz;
+  to.pull[0] += pull * f.nx;
+  to.pull[1] += pull * f.ny;
+  to.pull[2] += pull * f.nz;
+  to.w[0] += wx * f.nx;
+  to.w[1] += wx * f.ny;
+  to.w[2] += wx * f.nz;
+  to.w[3] += wy * f.ny;
+  to.w[4] += wy * f.nz;
+  to.w[5] += wz * f.nz;
+}
+
+// block += (m m') (x) W over the six blocks of a joint
+GOSHAWK_INLINE void add_diagonal(JointSums& joint, const double* m, Lanes w0, Lanes w1) {
+  int block = 0;
+  constexpr int kRow[6] = {0, 1, 2, 1, 2, 2};
+  constexpr int kColumn[6] = {0, 0, 0, 1, 1, 2};
+  for (; block < 6; ++block) {
+    const double c = m[kRow[block]] * m[kColumn[block]];
+    joint.block[block][0] += c * w0;
+    joint.block[block][1] += c * w1;
+  }
+}
+
+void linearise_faces(SplineState& w) {
+  Lanes gap = {}, proof = {}, worst = {}, outside = {};
+  const Lanes zero = {};
+  for (int p = 0; p < w.face_points; ++p) {
+    const FaceRange& range = w.ranges[p];
+    const Lanes point = point_of(w.x + 3 * range.joint, range.map);
+    const Lanes y[3] = {all(point[0]), all(point[1]), all(point[2])};
+    FaceSums to;
+    for (int i = range.begin; i < range.end; ++i) {
+      linearise_face(w.faces[i], y, to, gap, proof, worst, outside);
+    }
+    JointSums& joint = w.joints[range.joint];
+    const Lanes g = sums(to.g[0], to.g[1], to.g[2], zero);
+    const Lanes pull = sums(to.pull[0], to.pull[1], to.pull[2], zero);
+    for (int b = 0; b < 3; ++b) {
+      joint.dual[b] += range.map[b] * g;
+      joint.pull[b] += range.map[b] * pull;
+    }
+    add_diagonal(joint, range.map, sums(to.w[0], to.w[1], to.w[2], to.w[3]),
+                 sums(to.w[4], to.w[5], zero, zero));
+  }
+  w.gap += sum(gap);
+  w.proof += sum(proof);
+  w.primal_residual = larger(w.primal_residual, largest(worst));
+  w.face_violation = largest(outside);
+}
+
+// ds and dz of the predictor. @return the largest of -ds/s and -dz/z
+double predict_faces(SplineState& w) {
+  Lanes worst = {}, product = {};
+  for (int p = 0; p < w.face_points; ++p) {
+    const FaceRange& range = w.ranges[p];
+    const Lanes d = point_of(w.dx + 3 * range.joint, range.map);
+    const Lanes dy[3] = {all(d[0]), all(d[1]), all(d[2])};
+    for (int i = range.begin; i < range.end; ++i) {
+      FaceLanes& f = w.faces[i];
+      f.ds = -f.residual - (f.nx * dy[0] + f.ny * dy[1] + f.nz * dy[2]);
+      f.dz = -f.z - f.weight * f.ds;
+      const Lanes ratio = f.ds * f.inverse_s;  // dz / z = -1 - ds / s
+      worst = larger(worst, larger(-ratio, 1.0 + ratio));
+      f.target = f.ds * f.dz;
+      product += f.target;
+    }
+  }
+  w.product += sum(product);
+  return largest(worst);
+}
+
+// The right-hand side of the corrector: s z is to become mu - ds dz.
+void pull_faces(SplineState& w, double mu) {
+  const Lanes zero = {};
+  for (int p = 0; p < w.face_points; ++p) {
+    const FaceRange& range = w.ranges[p];
+    Lanes pull[3] = {};
+    for (int i = range.begin; i < range.end; ++i) {
+      FaceLanes& f = w.faces[i];
+      f.target = (mu - f.target) * f.inverse_s;
+      const Lanes c = f.target + f.weight * f.residual;
+      pull[0] += c * f.nx;
+      pull[1] += c * f.ny;
+      pull[2] += c * f.nz;
+    }
+    const Lanes all_pull = sums(pull[0], pull[1], pull[2], zero);
+    JointSums& joint = w.joints[range.joint];
+    for (int b = 0; b < 3; ++b) joint.pull[b] += range.map[b] * all_pull;
+  }
+}
+
+double finish_faces(SplineState& w) {
+  Lanes worst = {};
+  for (int p = 0; p < w.face_points; ++p) {
+    const FaceRange& range = w.ranges[p];
+    const Lanes d = point_of(w.dx + 3 * range.joint, range.map);
+    const Lanes dy[3] = {all(d[0]), all(d[1]), all(d[2])};
+    for (int i = range.begin; i < range.end; ++i) {
+      FaceLanes& f = w.faces[i];
+      f.ds = -f.residual - (f.nx * dy[0] + f.ny * dy[1] + f.nz * dy[2]);
+      f.dz = f.target - f.z - f.weight * f.ds;
+      worst = larger(worst, larger(-f.ds * f.inverse_s, -f.dz / f.z));
+    }
+  }
+  return largest(worst);
+}
+
+void apply_faces(SplineState& w, double step) {
+  const int end = w.face_points > 0 ? w.ranges[w.face_points - 1].end : 0;
+  for (int i = 0; i < end; ++i) {
+    w.faces[i].s += step * w.faces[i].ds;
+    w.faces[i].z += step * w.faces[i].dz;
+  }
+}

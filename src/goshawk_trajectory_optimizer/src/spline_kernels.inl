@@ -1,0 +1,124 @@
+// The iteration's passes over a SplineState. Included by one source for each instruction set,
+// inside an unnamed namespace: nothing here may be shared between them.
+
+#include "kernel_faces.inl"
+#include "kernel_limits.inl"
+#include "kernel_factor.inl"
+
+void start_sums(SplineState& w) {
+  w.objective = w.time_weight * w.eta;
+  for (int k = 0; k <= w.last; ++k) {
+    JointSums& j = w.joints[k];
+    for (auto& block : j.block) block[0] = block[1] = Lanes{};
+    for (int b = 0; b < 3; ++b) j.border[b] = j.cost[b] = j.dual[b] = j.pull[b] = Lanes{};
+  }
+  constexpr int kRow[6] = {0, 1, 2, 1, 2, 2};
+  constexpr int kColumn[6] = {0, 0, 0, 1, 1, 2};
+  constexpr Lanes kUnit0 = {1.0, 0.0, 0.0, 1.0};  // the unit matrix as a block
+  constexpr Lanes kUnit1 = {0.0, 1.0, 0.0, 0.0};
+  for (int k = 0; k < w.last; ++k) {
+    const double* q = w.jerk + 36 * k;
+    const Lanes* x = w.x + 3 * k;
+    JointSums& first = w.joints[k];
+    JointSums& second = w.joints[k + 1];
+    Lanes cost = {};
+    for (int b = 0; b < 6; ++b) {
+      Lanes g = {};
+      for (int c = 0; c < 6; ++c) g += q[6 * b + c] * x[c];
+      cost += g * x[b];
+      (b < 3 ? first.cost[b] : second.cost[b - 3]) += g;
+    }
+    w.objective += 0.5 * sum(cost);
+    for (int i = 0; i < 6; ++i) {
+      const double a = q[6 * kRow[i] + kColumn[i]];
+      const double b = q[6 * (kRow[i] + 3) + kColumn[i] + 3];
+      first.block[i][0] += a * kUnit0;
+      first.block[i][1] += a * kUnit1;
+      second.block[i][0] += b * kUnit0;
+      second.block[i][1] += b * kUnit1;
+    }
+    for (int i = 0; i < 9; ++i) {
+      const double c = q[6 * (i / 3 + 3) + i % 3];
+      w.pieces[k].block[i][0] = c * kUnit0;
+      w.pieces[k].block[i][1] = c * kUnit1;
+    }
+  }
+}
+
+void measure_dual_residual(SplineState& w) {
+  Lanes residual = {}, size = all(1.0), multipliers = {};
+  for (int k = 1; k < w.last; ++k) {
+    for (int b = 0; b < 3; ++b) {
+      const Lanes cost = w.joints[k].cost[b];
+      const Lanes dual = w.joints[k].dual[b];
+      residual = larger(residual, magnitude(cost + dual));
+      size = larger(size, magnitude(cost));
+      multipliers += magnitude(dual);
+    }
+  }
+  double worst = largest(residual), scale = largest(size);
+  w.multiplier_residual = sum(multipliers);
+  if (w.scale) {
+    double cost = w.time_weight, dual = w.dual_eta;
+    for (int b = 0; b < 3; ++b) {
+      cost += sum(w.joints[0].cost[b] * w.start_rate[b]);
+      cost += sum(w.joints[w.last].cost[b] * w.goal_rate[b]);
+      dual += sum(w.joints[0].dual[b] * w.start_rate[b]);
+      dual += sum(w.joints[w.last].dual[b] * w.goal_rate[b]);
+    }
+    worst = larger(worst, larger(cost + dual, -cost - dual));
+    scale = larger(scale, larger(cost, -cost));
+    w.multiplier_residual += larger(dual, -dual);
+  }
+  w.dual_residual = worst / scale;
+}
+
+void linearise(SplineState& w) {
+  w.dual_eta = w.pull_eta = w.hessian_eta = 0.0;
+  w.gap = w.proof = w.primal_residual = w.face_violation = w.limit_violation = 0.0;
+  start_sums(w);
+  linearise_faces(w);
+  linearise_limits<false>(w, w.velocity);
+  linearise_limits<true>(w, w.acceleration);
+  if (w.jerk_limit.lanes != nullptr) linearise_limits<true>(w, w.jerk_limit);
+  measure_dual_residual(w);
+}
+
+double predict(SplineState& w) {
+  load_rhs(w);
+  solve(w);
+  w.product = 0.0;
+  double worst = larger(1e-300, predict_faces(w));
+  worst = larger(worst, predict_limits<false>(w, w.velocity));
+  worst = larger(worst, predict_limits<true>(w, w.acceleration));
+  if (w.jerk_limit.lanes != nullptr) worst = larger(worst, predict_limits<true>(w, w.jerk_limit));
+  w.reach = worst > 1.0 ? 1.0 / worst : 1.0;
+  return w.reach;
+}
+
+double correct(SplineState& w, double mu) {
+  for (int k = 0; k <= w.last; ++k) {
+    for (int b = 0; b < 3; ++b) w.joints[k].pull[b] = Lanes{};
+  }
+  w.pull_eta = 0.0;
+  pull_faces(w, mu);
+  pull_limits<false>(w, w.velocity, mu);
+  pull_limits<true>(w, w.acceleration, mu);
+  if (w.jerk_limit.lanes != nullptr) pull_limits<true>(w, w.jerk_limit, mu);
+  load_rhs(w);
+  solve(w);
+  double worst = larger(1e-300, finish_faces(w));
+  worst = larger(worst, finish_limits<false>(w, w.velocity));
+  worst = larger(worst, finish_limits<true>(w, w.acceleration));
+  if (w.jerk_limit.lanes != nullptr) worst = larger(worst, finish_limits<true>(w, w.jerk_limit));
+  return 1.0 / worst;
+}
+
+void apply(SplineState& w, double step) {
+  for (int i = 0; i < 3 * (w.last + 1); ++i) w.x[i] += step * w.dx[i];
+  w.eta += step * w.deta;
+  apply_faces(w, step);
+  apply_limits(w, w.velocity, step);
+  apply_limits(w, w.acceleration, step);
+  if (w.jerk_limit.lanes != nullptr) apply_limits(w, w.jerk_limit, step);
+}

@@ -1,0 +1,119 @@
+#pragma once
+
+#include "lanes.hpp"
+
+// The working memory of SplineSolver, laid out for its kernels. Plain data: the kernels are
+// compiled for several instruction sets and must not instantiate anything that others share.
+namespace goshawk::trajectory_optimizer {
+
+/// Four faces of one face point. A face that only fills up the four has no normal.
+struct FaceLanes {
+  Lanes nx, ny, nz, offset;
+  Lanes s, z;               // slack and multiplier
+  Lanes residual;           // n.y - offset + s
+  Lanes inverse_s, weight;  // 1 / s, z / s
+  Lanes ds, dz;
+  Lanes target;  // what s z is to become
+};
+
+/// A control point y = p + beta v + gamma a of one joint and its faces.
+struct FaceRange {
+  int joint, begin, end;
+  double map[3];  // 1, beta, gamma
+};
+
+inline constexpr int kMostRows = 3;
+
+/// One limit on the four (or fewer) control points of a derivative of a piece:
+///   |y|_r^2 <= e          (velocity)        r: a weighted norm, e = e1 eta + e0
+///   |y|_r^2 / e <= e      (acceleration, jerk)
+/// y in units of the limit. A lane without a point has a map of zero and e = 1.
+struct LimitLanes {
+  Lanes map[6];  // of p, v, a of the first joint and of the second
+  Lanes e1, e0;
+  Lanes y[3];
+  Lanes e, inverse_e;
+  struct Row {
+    Lanes s, z, residual, inverse_s, weight, ds, dz, target;
+    Lanes slope_e;  // of the constraint, by eta
+  } row[kMostRows];
+};
+
+/// The limit on one derivative, all pieces.
+struct LimitSet {
+  LimitLanes* lanes = nullptr;        // one a piece; null: no such limit
+  int rows = 1;                       // norms of each point
+  double weights[kMostRows][3] = {};  // of the components of y in each row's norm
+};
+
+/// Sums over all points of one joint. Blocks of the Hessian are symmetric 3 x 3 matrices kept as
+/// xx xy xz yy | yz zz - -; the joint's are pp, vp, ap, vv, av, aa.
+struct JointSums {
+  Lanes block[6][2];
+  Lanes border[3];  // Hessian by the joint and eta
+  Lanes cost[3];    // gradient of the cost
+  Lanes dual[3];    // gradient of the constraints times multipliers
+  Lanes pull[3];    // right-hand side from the constraints
+};
+
+/// Blocks of the Hessian by the second joint of a piece (rows) and the first: pp, pv, pa, vp, ...
+struct PieceSums {
+  Lanes block[9][2];
+};
+
+/// A block column of the factors L D L': rows 0..8 the diagonal block, row 9 the border, rows
+/// 12..20 the block below, row 21 the border again (what is below then has the next panel's form).
+struct Panel {
+  Lanes u[9][6];           // columns of L D
+  Lanes below[9][3];       // columns of L, rows 12..23
+  Lanes transposed[9][3];  // row j of L's diagonal block
+  Lanes inverse_d[3];
+};
+
+/// Everything a kernel works on.
+struct SplineState {
+  int last = 0;  // index of the last joint = number of pieces
+  bool scale = true;
+  bool ends_move = false;
+  int rows = 1;                       // of each limit point
+  double weights[kMostRows][3] = {};  // of the components of y in each row's norm
+  int face_points = 0;
+  double degree = 1.0;  // number of products s z
+  double time_weight = 0.0;
+
+  Lanes* x = nullptr;  // 3 a joint: p, v, a
+  Lanes* dx = nullptr;
+  const Lanes* start_rate = nullptr;
+  const Lanes* goal_rate = nullptr;
+  const double* jerk = nullptr;  // 36 a piece
+  FaceRange* ranges = nullptr;
+  FaceLanes* faces = nullptr;
+  LimitSet velocity, acceleration, jerk_limit;
+  JointSums* joints = nullptr;
+  PieceSums* pieces = nullptr;
+  Panel* panels = nullptr;
+  Lanes* rhs = nullptr;  // 3 a joint, packed: nine values
+
+  double eta = 1.0, deta = 0.0;
+  double dual_eta = 0.0, pull_eta = 0.0, hessian_eta = 0.0, corner = 0.0;
+  double objective = 0.0, gap = 0.0, primal_residual = 0.0, dual_residual = 0.0;
+  double multiplier_residual = 0.0;  // sum of |G'z| over the unknowns
+  double proof = 0.0;                // z' (f + s)
+  double face_violation = 0.0, limit_violation = 0.0;
+  double reach = 1.0;    // step of the predictor to the boundary, at most 1
+  double product = 0.0;  // ds'dz of the predictor
+};
+
+/// The steps of an iteration, each a pass over the state.
+struct SplineKernels {
+  void (*linearise)(SplineState&);             // residuals and the reduced Hessian
+  bool (*factor)(SplineState&);                // false: not positive definite
+  double (*predict)(SplineState&);             // the step to the boundary
+  double (*correct)(SplineState&, double mu);  // likewise; ds and dz are final
+  void (*apply)(SplineState&, double step);
+};
+
+/// For this processor: the same bits from each.
+const SplineKernels& spline_kernels();
+
+}  // namespace goshawk::trajectory_optimizer

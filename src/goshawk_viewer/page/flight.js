@@ -1,0 +1,200 @@
+// The page of one flight: everything is in the file itself.
+'use strict';
+Goshawk.FlightPage = class extends Goshawk.Page {
+  constructor(data) {
+    super();
+    this.data = data;
+    this.legs = data.legs.map(leg => ({
+      ...leg, trajectory: leg.pieces.length ? new Goshawk.Trajectory(leg.pieces) : null}));
+    const f = data.flown;
+    this.track = f.t.map((t, k) => ({t, p: f.p.slice(3 * k, 3 * k + 3), v: f.v.slice(3 * k, 3 * k + 3),
+                                     q: f.q.slice(4 * k, 4 * k + 4)}));
+    this.begin = this.track.length ? this.track[0].t : 0;
+    this.end = this.track.length ? this.track[this.track.length - 1].t :
+        Math.max(0, ...this.legs.filter(l => l.trajectory).map(l => l.start + l.trajectory.duration));
+    this.playing = false;
+    if (this.view) this.fillView();
+    this.fillPanel();
+    this.fillPlots();
+    this.bindTime();
+    this.setTime(this.begin);
+  }
+
+  framed() {
+    const points = this.track.map(s => s.p);
+    for (const leg of this.legs) points.push(...leg.waypoints, ...leg.raw);
+    return points;
+  }
+
+  fillView() {
+    const view = this.view, data = this.data;
+    view.bodyRadius = data.body_radius;
+    view.speedScale = data.limits.v_max;
+    view.makeVehicle();
+    if (data.obstacles) view.maps.obstacles = Goshawk.Voxels.fromRuns(data.obstacles);
+    if (data.grown) view.maps.grown = Goshawk.Voxels.fromRuns(data.grown);
+    view.setLegs(this.legs);
+    view.setFlown(this.track);
+    const map = view.maps.obstacles || view.maps.grown;
+    if (map) {
+      const highest = Math.max(map.origin[2] + map.resolution, ...this.framed().map(p => p[2]));
+      this.setCutRange(map.origin[2], map.upper(2), Math.min(map.upper(2), highest + 0.3));
+    } else {
+      $('cut-row').hidden = true;
+    }
+    view.drawMaps();
+    const ends = this.legs.flatMap(l => l.waypoints.length ? [l.waypoints[l.waypoints.length - 1]] : []);
+    const start = this.legs.length && this.legs[0].waypoints.length ? [this.legs[0].waypoints[0]] : [];
+    view.setGoals([...start, ...ends]);
+    view.frame(this.framed());
+    for (const [name, have] of [['grown', data.grown], ['flown', this.track.length],
+                                ['vehicle', this.track.length || this.legs.length]]) {
+      if (!have) $('layer-' + name).parentElement.hidden = true;
+    }
+  }
+
+  fillPanel() {
+    const {limits, title, summary} = this.data;
+    document.title = title;
+    $('title').textContent = title;
+    $('speed-top').textContent = limits.v_max;
+    const facts = [];
+    const duration = this.end - this.begin;
+    const flights = this.legs.filter(l => l.trajectory);
+    if (flights.length) {
+      facts.push(['trajectory', flights.reduce((s, l) => s + l.trajectory.duration, 0).toFixed(2) + ' s']);
+    }
+    if (this.track.length) {
+      let length = 0, top = 0;
+      this.track.forEach((s, k) => {
+        if (k) length += V3.norm(V3.add(s.p, this.track[k - 1].p, -1));
+        top = Math.max(top, V3.norm(s.v));
+      });
+      facts.push(['recorded', duration.toFixed(2) + ' s'], ['flown', length.toFixed(2) + ' m'],
+                 ['top speed', top.toFixed(2) + ' m/s']);
+    }
+    facts.push(['limits', `${limits.v_max} m/s, ${limits.a_max} m/s²`]);
+    if (summary) {
+      if (summary.clearance) facts.push(['clearance', summary.clearance.smallest_m.toFixed(3) + ' m']);
+      if (summary.tracking) facts.push(['tracking rms', (1e3 * summary.tracking.rms_error_m).toFixed(1) + ' mm']);
+      $('badge').hidden = false;
+      $('badge').textContent = summary.verdict;
+      $('badge').className = summary.verdict === 'safe' ? '' : 'bad';
+      if (summary.code !== 'ok') $('sentence').textContent = `${summary.code}: ${summary.message}`;
+    }
+    this.setFacts(facts);
+  }
+
+  // What the plan of a moment wants: of the leg that began last, and its end once it is over.
+  plannedAt(t) {
+    let leg = null;
+    for (const l of this.legs) if (l.trajectory && l.start <= t && (!leg || l.start >= leg.start)) leg = l;
+    return leg && leg.trajectory.sample(t - leg.start);
+  }
+
+  fillPlots() {
+    this.makePlots(this.data.limits);
+    const flown = {speed: [], acceleration: [], error: []}, plan = {speed: [], acceleration: []};
+    const reach = Math.max(1, Math.round(0.05 / this.spacing()));
+    this.track.forEach((s, k) => {
+      flown.speed.push([s.t, V3.norm(s.v)]);
+      const a = this.track[Math.max(0, k - reach)], b = this.track[Math.min(this.track.length - 1, k + reach)];
+      if (b.t > a.t) flown.acceleration.push([s.t, V3.norm(V3.add(b.v, a.v, -1)) / (b.t - a.t)]);
+      const wanted = this.plannedAt(s.t);
+      if (wanted) flown.error.push([s.t, V3.norm(V3.add(s.p, wanted.position, -1))]);
+    });
+    for (let k = 0; k <= 800; ++k) {
+      const t = this.begin + (this.end - this.begin) * k / 800, s = this.plannedAt(t);
+      if (!s) continue;
+      plan.speed.push([t, V3.norm(s.velocity)]);
+      plan.acceleration.push([t, V3.norm(s.acceleration)]);
+    }
+    this.curves = {flown, plan};
+    this.colorPlots();
+  }
+
+  spacing() {
+    const n = this.track.length;
+    return n > 1 ? Math.max(1e-3, (this.end - this.begin) / (n - 1)) : 0.02;
+  }
+
+  colorPlots() {
+    if (!this.curves) return;
+    const {flown, plan} = this.curves, style = this.style();
+    const span = [this.begin, Math.max(this.end, this.begin + 1e-3)];
+    const pair = name => [{color: style.plan, points: plan[name], width: 3.2},
+                          {color: style.flown, points: flown[name], width: 1.2}];
+    this.plots[0].set(span, pair('speed'));
+    this.plots[1].set(span, pair('acceleration'));
+    this.plots[2].set(span, [{color: style.flown, points: flown.error, width: 1.2}]);
+    this.plotsOld = true;
+  }
+
+  setTheme(name) {
+    super.setTheme(name);
+    this.colorPlots();
+  }
+
+  bindTime() {
+    Object.assign($('time'), {min: this.begin, max: Math.max(this.end, this.begin + 1e-3), step: 0.001});
+    $('time').addEventListener('input', () => this.setTime(Number($('time').value)));
+    $('play').addEventListener('click', () => this.play(!this.playing));
+    window.addEventListener('keydown', event => {
+      if (event.target.tagName === 'INPUT' || event.target.tagName === 'BUTTON') return;
+      if (event.key === ' ') this.play(!this.playing);
+      if (event.key === 'ArrowRight') this.setTime(this.now + 0.1);
+      if (event.key === 'ArrowLeft') this.setTime(this.now - 0.1);
+    });
+    for (const plot of this.plots) {
+      const seek = event => this.setTime(plot.timeAt(event.clientX));
+      plot.canvas.addEventListener('pointerdown', event => {
+        plot.canvas.setPointerCapture(event.pointerId);
+        seek(event);
+      });
+      plot.canvas.addEventListener('pointermove', event => { if (event.buttons) seek(event); });
+    }
+  }
+
+  play(on) {
+    this.playing = on;
+    this.last = null;
+    if (on && this.now >= this.end) this.setTime(this.begin);
+    $('play').textContent = on ? '\u275A\u275A' : '\u25B6';
+  }
+
+  step(time) {
+    if (!this.playing) return;
+    if (this.last !== null) this.setTime(this.now + (time - this.last) * Number($('rate').value));
+    this.last = time;
+    if (this.now >= this.end) this.play(false);
+  }
+
+  // Position and attitude between the samples around t.
+  poseAt(t) {
+    const track = this.track;
+    if (!track.length) {
+      const s = this.plannedAt(t);
+      return s && {p: s.position, q: [1, 0, 0, 0]};
+    }
+    let lo = 0, hi = track.length - 1;
+    while (hi - lo > 1) {
+      const mid = (lo + hi) >> 1;
+      if (track[mid].t <= t) lo = mid; else hi = mid;
+    }
+    const a = track[lo], b = track[hi];
+    const s = b.t > a.t ? Math.max(0, Math.min(1, (t - a.t) / (b.t - a.t))) : 0;
+    const same = a.q.reduce((sum, c, k) => sum + c * b.q[k], 0) < 0 ? -1 : 1;
+    const q = a.q.map((c, k) => c + s * (same * b.q[k] - c));
+    const n = Math.hypot(...q) || 1;
+    return {p: V3.mix(a.p, b.p, s), q: q.map(c => c / n)};
+  }
+
+  setTime(t) {
+    this.now = Math.max(this.begin, Math.min(this.end, t));
+    $('time').value = this.now;
+    $('time-text').textContent = `${(this.now - this.begin).toFixed(2)} / ${(this.end - this.begin).toFixed(2)} s`;
+    const pose = this.poseAt(this.now);
+    if (this.view && pose) this.view.setVehicle(pose.p, pose.q);
+    this.plotsOld = true;
+  }
+};

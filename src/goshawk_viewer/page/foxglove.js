@@ -1,0 +1,66 @@
+// A client of the Foxglove WebSocket protocol, version 1.
+'use strict';
+Goshawk.FoxgloveClient = class {
+  // topics: {"odom": message => ...} by the end of the topic's name; onState(text) tells of the link
+  constructor(url, topics, onState) {
+    Object.assign(this, {url, topics, onState});
+    this.connect();
+  }
+
+  connect() {
+    this.channels = new Map();
+    this.subscriptions = new Map();
+    this.socket = new WebSocket(this.url, ['foxglove.websocket.v1']);
+    this.socket.binaryType = 'arraybuffer';
+    this.socket.onopen = () => {
+      this.onState('connected');
+      this.say({op: 'advertise', channels: [{id: 1, topic: 'goal_pose', encoding: 'json',
+                                             schemaName: 'geometry_msgs/msg/PoseStamped'}]});
+    };
+    this.socket.onmessage = event => {
+      if (typeof event.data === 'string') this.onText(JSON.parse(event.data));
+      else this.onBinary(new DataView(event.data));
+    };
+    this.socket.onclose = event => {
+      this.onState('no connection to ' + this.url + (event.reason ? ': ' + event.reason : '') + '; trying again');
+      setTimeout(() => this.connect(), 1000);
+    };
+  }
+
+  say(message) { this.socket.send(JSON.stringify(message)); }
+
+  onText(message) {
+    if (message.op === 'status') this.onState(message.message);
+    if (message.op !== 'advertise') return;
+    for (const channel of message.channels) {
+      const name = Object.keys(this.topics).find(
+          t => channel.topic === t || channel.topic.endsWith('/' + t));
+      if (!name || [...this.channels.values()].includes(name)) continue;
+      this.channels.set(channel.id, name);
+      this.subscriptions.set(channel.id, {take: this.topics[name], schema: new Goshawk.Schema(channel.schema)});
+      this.say({op: 'subscribe', subscriptions: [{id: channel.id, channelId: channel.id}]});
+    }
+  }
+
+  onBinary(view) {
+    if (view.getUint8(0) !== 1) return;
+    const subscription = this.subscriptions.get(view.getUint32(1, true));
+    if (!subscription) return;
+    try {
+      subscription.take(subscription.schema.read(new DataView(view.buffer, 13)));
+    } catch (error) {
+      console.warn('a message cannot be read: ' + error);
+    }
+  }
+
+  sendGoal(p) {
+    const body = new TextEncoder().encode(JSON.stringify({
+      header: {frame_id: 'map'},
+      pose: {position: {x: p[0], y: p[1], z: p[2]}, orientation: {w: 1}}}));
+    const frame = new Uint8Array(5 + body.length);
+    frame[0] = 1;
+    new DataView(frame.buffer).setUint32(1, 1, true);
+    frame.set(body, 5);
+    this.socket.send(frame);
+  }
+};

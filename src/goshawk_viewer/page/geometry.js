@@ -1,0 +1,158 @@
+// Shapes from numbers: voxels from runs of bits, faces of voxels, faces of polytopes, Bezier curves.
+'use strict';
+const Goshawk = {};
+
+// A set of voxels: x fastest, one byte each. Outside of the grid counts as free here: only what
+// can be seen is drawn.
+Goshawk.Voxels = class {
+  constructor(origin, resolution, size) {
+    this.origin = origin;          // [m] map, lower corner of voxel (0, 0, 0)
+    this.resolution = resolution;  // [m]
+    this.size = size;
+    this.cells = new Uint8Array(size[0] * size[1] * size[2]);
+  }
+
+  // Alternating lengths of free and occupied runs, LEB128, base64.
+  static fromRuns(map) {
+    const voxels = new Goshawk.Voxels(map.origin, map.resolution, map.size);
+    const bytes = Uint8Array.from(atob(map.runs), c => c.charCodeAt(0));
+    let at = 0, value = 0, k = 0;
+    while (k < bytes.length) {
+      let length = 0, scale = 1, byte;
+      do {
+        byte = bytes[k++];
+        length += (byte & 127) * scale;
+        scale *= 128;
+      } while (byte & 128);
+      if (value) voxels.cells.fill(1, at, at + length);
+      at += length;
+      value ^= 1;
+    }
+    return voxels;
+  }
+
+  // Rows of 64-bit words as goshawk_msgs/VoxelGrid has them.
+  static fromWords(origin, resolution, size, bytes) {
+    const voxels = new Goshawk.Voxels(origin, resolution, size);
+    const rowBytes = Math.ceil(size[0] / 64) * 8;
+    for (let row = 0, at = 0; row < size[1] * size[2]; ++row) {
+      for (let x = 0; x < size[0]; ++x, ++at) {
+        voxels.cells[at] = (bytes[row * rowBytes + (x >> 3)] >> (x & 7)) & 1;
+      }
+    }
+    return voxels;
+  }
+
+  upper(axis) { return this.origin[axis] + this.size[axis] * this.resolution; }
+
+  // How many layers lie below a height.
+  layersBelow(z) {
+    const n = Math.ceil((z - this.origin[2]) / this.resolution - 1e-6);
+    return Math.max(0, Math.min(this.size[2], n));
+  }
+};
+
+// Every face between an occupied voxel and a free one, of the layers [z0, z1), as if nothing were
+// outside them. ao: how open each corner of the face is, 0 (in a nook) to 3.
+Goshawk.voxelFaces = function(voxels, z0, z1) {
+  const [nx, ny, nz] = voxels.size;
+  const cells = voxels.cells;
+  const stride = [1, nx, nx * ny];
+  const solid = (x, y, z) => x >= 0 && y >= 0 && z >= z0 && x < nx && y < ny && z < z1 &&
+      cells[x + nx * (y + ny * z)] === 1;
+  const cell = [], face = [], ao = [];
+  const p = [0, 0, 0];
+  const corner = (q, u, v, a, b) => {
+    const at = (i, j) => { const r = [...q]; r[u] += i; r[v] += j; return solid(...r) ? 1 : 0; };
+    const s = at(a, 0), t = at(0, b);
+    return s && t ? 0 : 3 - s - t - at(a, b);
+  };
+  for (let z = z0; z < z1; ++z) for (let y = 0; y < ny; ++y) for (let x = 0; x < nx; ++x) {
+    const index = x + nx * y + stride[2] * z;
+    if (!cells[index]) continue;
+    for (let k = 0; k < 6; ++k) {
+      const axis = k >> 1, step = k & 1 ? -1 : 1;
+      p[0] = x; p[1] = y; p[2] = z;
+      p[axis] += step;
+      if (solid(p[0], p[1], p[2])) continue;
+      const u = (axis + 1) % 3, v = (axis + 2) % 3;
+      cell.push(x, y, z);
+      face.push(k);
+      ao.push(corner(p, u, v, -1, -1), corner(p, u, v, 1, -1), corner(p, u, v, -1, 1),
+              corner(p, u, v, 1, 1));
+    }
+  }
+  return {cell: new Uint16Array(cell), face: new Uint8Array(face), ao: new Uint8Array(ao)};
+};
+
+const V3 = {
+  add: (a, b, s = 1) => [a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]],
+  dot: (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2],
+  cross: (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]],
+  norm: a => Math.hypot(a[0], a[1], a[2]),
+  mix: (a, b, s) => [a[0] + s * (b[0] - a[0]), a[1] + s * (b[1] - a[1]), a[2] + s * (b[2] - a[2])],
+};
+Goshawk.V3 = V3;
+
+// {p : A p <= b} as convex polygons, one a face: a wide square on each plane, cut by all others.
+Goshawk.polytopeFaces = function(A, b) {
+  const polygons = [];
+  const rows = b.map((_, i) => A.slice(3 * i, 3 * i + 3));
+  rows.forEach((n, i) => {
+    const w = Math.abs(n[2]) < 0.9 ? [0, 0, 1] : [1, 0, 0];
+    let u = V3.cross(n, w);
+    u = u.map(c => c / V3.norm(u));
+    const v = V3.cross(n, u);
+    const middle = n.map(c => c * b[i]);
+    const R = 1e3;
+    let polygon = [[R, R], [-R, R], [-R, -R], [R, -R]].map(
+        ([s, t]) => V3.add(V3.add(middle, u, s), v, t));
+    rows.forEach((m, j) => {
+      if (j !== i && polygon.length) polygon = cut(polygon, m, b[j]);
+    });
+    if (polygon.length >= 3) polygons.push(polygon);
+  });
+  return polygons;
+
+  function cut(polygon, m, offset) {
+    const kept = [];
+    polygon.forEach((p, k) => {
+      const q = polygon[(k + 1) % polygon.length];
+      const dp = V3.dot(m, p) - offset, dq = V3.dot(m, q) - offset;
+      if (dp <= 0) kept.push(p);
+      if ((dp < 0 && dq > 0) || (dp > 0 && dq < 0)) kept.push(V3.mix(p, q, dp / (dp - dq)));
+    });
+    return kept;
+  }
+};
+
+// A trajectory of Bezier pieces {duration, points: [[x, y, z], ...]}: position, velocity and
+// acceleration by de Casteljau's scheme.
+Goshawk.Trajectory = class {
+  constructor(pieces) {
+    this.pieces = pieces;
+    this.duration = pieces.reduce((sum, piece) => sum + piece.duration, 0);
+  }
+
+  sample(t) {
+    let rest = Math.max(0, Math.min(t, this.duration)), k = 0;
+    while (k + 1 < this.pieces.length && rest > this.pieces[k].duration) {
+      rest -= this.pieces[k++].duration;
+    }
+    const piece = this.pieces[k], T = piece.duration, s = Math.min(1, rest / T);
+    let points = piece.points;
+    const n = points.length - 1;
+    let velocity = [0, 0, 0], acceleration = [0, 0, 0];
+    while (points.length > 1) {
+      if (points.length === 3) {
+        acceleration = [0, 1, 2].map(
+            i => n * (n - 1) / (T * T) * (points[2][i] - 2 * points[1][i] + points[0][i]));
+      }
+      if (points.length === 2) {
+        velocity = [0, 1, 2].map(i => n / T * (points[1][i] - points[0][i]));
+      }
+      points = points.slice(1).map((q, i) => V3.mix(points[i], q, s));
+    }
+    return {position: points[0], velocity, acceleration};
+  }
+};

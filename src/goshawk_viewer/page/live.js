@@ -1,0 +1,181 @@
+// The live page: the same picture, fed by the bridge; a click sends a goal.
+'use strict';
+const kPlotted = 20;     // [s] that the plots show
+const kTracked = 12000;  // samples of the flown track that are kept
+
+const seconds = stamp => stamp.sec + 1e-9 * stamp.nanosec;
+const xyz = p => [p.x, p.y, p.z];
+
+Goshawk.LivePage = class extends Goshawk.Page {
+  constructor(data) {
+    super();
+    this.url = new URLSearchParams(location.search).get('ws') || data.url ||
+        `ws://${location.hostname || 'localhost'}:8765`;
+    document.title = 'Goshawk live';
+    $('title').textContent = 'Live';
+    $('live').hidden = false;
+    $('timeline').hidden = true;
+    this.track = [];
+    this.paths = new Map();
+    this.curves = {speed: [], acceleration: [], error: []};
+    this.makePlots(null);
+    this.state = {link: 'connecting', mode: '', text: ''};
+    this.bindGoal();
+    this.client = new Goshawk.FoxgloveClient(this.url, {
+      'map/voxels': m => this.onGrown(m), octomap_binary: m => this.onMap(m),
+      path: m => this.onPath(m), committed_trajectory: m => this.onTrajectory(m),
+      odom: m => this.onOdometry(m), navigator_state: m => this.onNavigator(m),
+    }, text => this.setLink(text));
+    this.tell();
+  }
+
+  framed() {
+    const leg = this.leg ? this.leg.waypoints : [];
+    return [...leg, ...this.track.map(s => s.p)];
+  }
+
+  setLink(text) {
+    this.state.link = text;
+    this.tell();
+  }
+
+  tell() {
+    const linked = this.state.link === 'connected';
+    $('badge').hidden = false;
+    $('badge').textContent = linked ? this.state.mode || 'connected' : 'not connected';
+    $('badge').className = linked && this.state.mode !== 'failed' ? '' : 'bad';
+    $('sentence').textContent = linked ? '' : this.state.link;
+    $('live-state').textContent = this.state.text;
+  }
+
+  onMap(m) {
+    if (!this.view) return;
+    const voxels = Goshawk.octomapVoxels(m.data, m.resolution);
+    if (voxels) this.showMap('obstacles', voxels);
+  }
+
+  onGrown(m) {
+    if (!this.view) return;
+    this.showMap('grown', Goshawk.Voxels.fromWords(
+        xyz(m.origin), m.resolution, [m.size_x, m.size_y, m.size_z], m.occupied));
+  }
+
+  showMap(kind, voxels) {
+    const first = !this.view.maps.obstacles && !this.view.maps.grown;
+    this.view.maps[kind] = voxels;
+    if (first) {
+      const last = this.track[this.track.length - 1];
+      const height = last ? last.p[2] + 1.4 : voxels.upper(2);
+      this.setCutRange(voxels.origin[2], voxels.upper(2), Math.min(voxels.upper(2), height));
+      Object.assign($('goal-height'), {min: voxels.origin[2], max: voxels.upper(2)});
+      $('goal-height').value = last ? last.p[2] : (voxels.origin[2] + voxels.upper(2)) / 2;
+      this.showHeight();
+    }
+    this.view.drawMaps();
+    if (first) this.view.frame([]);
+  }
+
+  onPath(m) {
+    this.paths.set(m.request.id, m);
+    if (this.paths.size > 20) this.paths.delete(this.paths.keys().next().value);
+  }
+
+  onTrajectory(m) {
+    const t = m.trajectory;
+    const path = this.paths.get(t.request.id);
+    const pieces = t.pieces.map(p => ({duration: p.duration, points: p.control_points.map(xyz)}));
+    this.leg = {
+      raw: path ? path.raw.map(xyz) : [], waypoints: path ? path.waypoints.map(xyz) : [],
+      corridor: t.polytopes.map(p => ({A: p.normals, b: p.offsets})),
+      trajectory: new Goshawk.Trajectory(pieces), start: seconds(m.start_time)};
+    const {v_max, a_max} = t.request.limits;
+    this.plots[0].limit = v_max;
+    this.plots[1].limit = a_max;
+    $('speed-top').textContent = v_max;
+    this.setFacts([['trajectory', this.leg.trajectory.duration.toFixed(2) + ' s'],
+                   ['polytopes', String(t.polytopes.length)], ['limits', `${v_max} m/s, ${a_max} m/s²`]]);
+    if (!this.view) return;
+    this.view.speedScale = v_max;
+    this.view.setLegs([this.leg]);
+    this.view.setGoals([xyz(t.request.start.position), xyz(t.request.goal.position)]);
+  }
+
+  onOdometry(m) {
+    const t = seconds(m.header.stamp), last = this.track[this.track.length - 1];
+    const p = xyz(m.pose.pose.position), o = m.pose.pose.orientation;
+    const speed = V3.norm(xyz(m.twist.twist.linear));
+    this.pose = {p, q: [o.w, o.x, o.y, o.z]};
+    if (last && t < last.t - 1) this.track = [];  // a new simulation
+    if (last && t - last.t < 0.02) return;
+    this.track.push({t, p, v: this.toMap(m.twist.twist.linear, o)});
+    if (this.track.length > kTracked) this.track.splice(0, kTracked / 10);
+    this.now = t;
+    this.curves.speed.push([t, speed]);
+    const n = this.track.length, before = this.track[Math.max(0, n - 6)], here = this.track[n - 1];
+    if (t > before.t) {
+      this.curves.acceleration.push(
+          [(t + before.t) / 2, V3.norm(V3.add(here.v, before.v, -1)) / (t - before.t)]);
+    }
+    if (this.leg && t >= this.leg.start) {
+      this.curves.error.push([t, V3.norm(V3.add(p, this.leg.trajectory.sample(t - this.leg.start).position, -1))]);
+    }
+    this.fresh = true;
+  }
+
+  // The twist is in the body's frame.
+  toMap(v, o) {
+    const q = [o.x, o.y, o.z], a = xyz(v);
+    const twice = V3.cross(q, a).map(c => 2 * c);
+    return V3.add(V3.add(a, twice, o.w), V3.cross(q, twice));
+  }
+
+  onNavigator(m) {
+    this.state.mode = m.state;
+    this.state.text = m.code === 'ok' ? '' : `${m.code}: ${m.message}`;
+    this.tell();
+  }
+
+  step(time) {
+    if (!this.pose) return;
+    if (this.view) this.view.setVehicle(this.pose.p, this.pose.q);
+    if (!this.fresh || time - (this.drawn || 0) < 0.15) return;
+    this.drawn = time;
+    this.fresh = false;
+    if (this.view && this.track.length > 1) this.view.setFlown(this.track);
+    const style = this.style(), span = [this.now - kPlotted, this.now];
+    Object.values(this.curves).forEach((points, k) => {
+      while (points.length && points[0][0] < span[0]) points.shift();
+      this.plots[k].set(span, [{color: style.plan, points, width: 1.8}]);
+    });
+    this.plotsOld = true;
+  }
+
+  showHeight() {
+    $('goal-text').textContent = Number($('goal-height').value).toFixed(1) + ' m';
+  }
+
+  bindGoal() {
+    const button = $('goal'), canvas = $('view');
+    let down = null;
+    const aim = on => {
+      this.aiming = on;
+      button.setAttribute('aria-pressed', on);
+      document.body.classList.toggle('aiming', on);
+    };
+    $('goal-height').addEventListener('input', () => this.showHeight());
+    this.showHeight();
+    button.addEventListener('click', () => aim(!this.aiming));
+    canvas.addEventListener('pointerdown', event => { down = [event.clientX, event.clientY]; });
+    canvas.addEventListener('pointerup', event => {
+      const moved = down && Math.hypot(event.clientX - down[0], event.clientY - down[1]);
+      if (!this.aiming || moved === null || moved > 4) return;
+      const goal = this.view.pick(event, Number($('goal-height').value));
+      if (!goal) return;
+      aim(false);
+      this.client.sendGoal(goal);
+      this.sent = goal;
+      this.state.text = `goal sent: ${goal.map(c => c.toFixed(2)).join(', ')}`;
+      this.tell();
+    });
+  }
+};

@@ -1,0 +1,137 @@
+// What both pages share: theme, legend, facts, plots, the loop that draws.
+'use strict';
+const $ = id => document.getElementById(id);
+
+Goshawk.layerNames = [
+  ['obstacles', 'obstacles', t => t.high], ['above', 'what is above the cut', t => t.ghost],
+  ['grown', 'grown by the vehicle', t => t.grown], ['raw', 'path as searched', t => t.raw, 'thin'],
+  ['pruned', 'pruned path', t => t.pruned, 'thin'], ['corridor', 'corridor', t => t.corridor],
+  ['trajectory', 'trajectory, by speed', null], ['flown', 'flown track', t => t.flown, 'thin'],
+  ['vehicle', 'vehicle', t => t.accent], ['goals', 'start and goals', t => t.goal]];
+
+Goshawk.Page = class {
+  constructor() {
+    this.view = this.makeView();
+    this.plots = [];
+    this.now = 0;
+    this.buildLegend();
+    this.bindButtons();
+    window.addEventListener('resize', () => { if (this.view) this.view.resize(); this.plotsOld = true; });
+    this.setTheme(document.documentElement.dataset.theme);
+  }
+
+  makeView() {
+    const probe = document.createElement('canvas');
+    let gl = null;
+    try {
+      gl = probe.getContext('webgl') || probe.getContext('experimental-webgl');
+    } catch (error) { gl = null; }
+    if (gl) {
+      try { return new Goshawk.View($('view')); } catch (error) { console.warn(String(error)); }
+    }
+    $('no-webgl').hidden = false;
+    $('view').hidden = true;
+    for (const id of ['cut-row', 'follow', 'home', 'layers', 'speed-scale']) $(id).hidden = true;
+    return null;
+  }
+
+  buildLegend() {
+    for (const [name, text, , shape] of Goshawk.layerNames) {
+      const label = document.createElement('label');
+      const box = document.createElement('input');
+      box.type = 'checkbox';
+      box.id = 'layer-' + name;
+      box.checked = !this.view || this.view.layers[name].visible;
+      box.addEventListener('change', () => {
+        this.view.layers[name].visible = box.checked;
+        this.view.redraw = true;
+      });
+      const swatch = document.createElement('i');
+      if (shape) swatch.className = shape;
+      label.append(box, swatch, text);
+      $('layers').append(label);
+    }
+    const stops = [0, 0.2, 0.4, 0.6, 0.8, 1].map(s =>
+        `rgb(${Goshawk.speedColor(s).map(c => Math.round(255 * c)).join(',')})`);
+    this.gradient = `linear-gradient(90deg, ${stops.join(',')})`;
+    $('speed-scale').querySelector('i').style.background = this.gradient;
+  }
+
+  bindButtons() {
+    $('theme').addEventListener('click', () => {
+      this.setTheme(document.documentElement.dataset.theme === 'dark' ? 'light' : 'dark');
+    });
+    $('follow').addEventListener('click', () => {
+      this.view.follow = !this.view.follow;
+      $('follow').setAttribute('aria-pressed', this.view.follow);
+    });
+    $('home').addEventListener('click', () => this.view.frame(this.framed()));
+    let timer = 0;
+    $('cut').addEventListener('input', () => {
+      $('cut-text').textContent = Number($('cut').value).toFixed(1) + ' m';
+      clearTimeout(timer);
+      timer = setTimeout(() => this.view.setCut(Number($('cut').value)), 30);
+    });
+  }
+
+  // The heights of the map, and where to cut it at first.
+  setCutRange(lower, upper, at) {
+    Object.assign($('cut'), {min: lower, max: upper, step: 0.1});
+    $('cut').value = at;
+    $('cut-text').textContent = Number($('cut').value).toFixed(1) + ' m';
+    this.view.cut = Number($('cut').value);
+  }
+
+  setTheme(name) {
+    document.documentElement.dataset.theme = name;
+    $('theme').textContent = name === 'dark' ? 'Light' : 'Dark';
+    if (this.view) this.view.setTheme(name);
+    const theme = Goshawk.themes[name];
+    const swatches = $('layers').querySelectorAll('i');
+    Goshawk.layerNames.forEach(([, , color], k) => {
+      swatches[k].style.background =
+          color ? '#' + color(theme).toString(16).padStart(6, '0') : this.gradient;
+    });
+    this.plotsOld = true;
+  }
+
+  style() {
+    const css = getComputedStyle(document.documentElement);
+    const get = name => css.getPropertyValue('--' + name).trim();
+    return {font: get('font'), text: get('text'), soft: get('soft'), line: get('line'), limit: get('limit'),
+            cursor: get('soft'), flown: get('flown'), plan: get('plan')};
+  }
+
+  setFacts(facts) {
+    $('facts').replaceChildren(...facts.flatMap(([name, value]) => {
+      const dt = document.createElement('dt'), dd = document.createElement('dd');
+      dt.textContent = name;
+      dd.textContent = value;
+      return [dt, dd];
+    }));
+  }
+
+  makePlots(limits) {
+    const canvases = $('plots').querySelectorAll('canvas');
+    this.plots = [
+      new Goshawk.Plot(canvases[0], {title: 'speed', unit: 'm/s', limit: limits && limits.v_max}),
+      new Goshawk.Plot(canvases[1], {title: 'acceleration', unit: 'm/s²', limit: limits && limits.a_max}),
+      new Goshawk.Plot(canvases[2], {title: 'tracking error', unit: 'mm', scale: 1000}),
+    ];
+  }
+
+  drawPlots() {
+    const style = this.style();
+    for (const plot of this.plots) plot.draw(this.now, style);
+  }
+
+  run() {
+    const frame = time => {
+      this.step(time / 1000);
+      if (this.view) this.view.render();
+      if (this.plotsOld) { this.plotsOld = false; this.drawPlots(); }
+      requestAnimationFrame(frame);
+    };
+    requestAnimationFrame(frame);
+  }
+};

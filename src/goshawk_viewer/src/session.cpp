@@ -1,0 +1,129 @@
+#include "session.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+namespace goshawk::viewer_bridge {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr std::size_t kMostChannels = 1000;  // of one client, of each kind
+
+std::uint32_t id_of(const Json& value) {
+  return value.get<std::uint32_t>();
+}
+
+}  // namespace
+
+const std::uint32_t* Session::subscription(std::uint32_t channel) const {
+  const auto found = subscriptions_.find(channel);
+  return found == subscriptions_.end() ? nullptr : &found->second;
+}
+
+bool Session::within_rate(int messages_per_s, std::chrono::steady_clock::time_point now) {
+  if (now - window_ > std::chrono::seconds(1)) {
+    window_ = now;
+    in_window_ = 0;
+  }
+  return ++in_window_ <= messages_per_s;
+}
+
+Session::Answer Session::on_text(const std::string& text,
+                                 const std::function<bool(std::uint32_t)>& known) {
+  Answer answer;
+  try {
+    const Json message = Json::parse(text);
+    const auto op = message.at("op").get<std::string>();
+    if (op == "subscribe") {
+      for (const auto& s : message.at("subscriptions")) {
+        const auto channel = id_of(s.at("channelId"));
+        if (!known(channel)) {
+          answer.warnings.push_back("there is no channel " + std::to_string(channel));
+          continue;
+        }
+        if (subscriptions_.size() >= kMostChannels) break;
+        subscriptions_[channel] = id_of(s.at("id"));
+        ClientEvent event;
+        event.client = client_;
+        event.channel = channel;
+        answer.events.push_back(event);
+      }
+    } else if (op == "unsubscribe") {
+      for (const auto& id : message.at("subscriptionIds")) {
+        std::erase_if(subscriptions_, [&](const auto& s) { return s.second == id_of(id); });
+      }
+    } else if (op == "advertise") {
+      for (const auto& c : message.at("channels")) {
+        if (published_.size() >= kMostChannels) break;
+        Published p{c.at("topic").get<std::string>(), c.at("encoding").get<std::string>(),
+                    c.at("schemaName").get<std::string>()};
+        ClientEvent event;
+        event.kind = ClientEvent::Kind::advertised;
+        event.client = client_;
+        event.topic = p.topic;
+        event.encoding = p.encoding;
+        event.schema_name = p.schema_name;
+        answer.events.push_back(event);
+        published_[id_of(c.at("id"))] = std::move(p);
+      }
+    } else if (op == "unadvertise") {
+      for (const auto& id : message.at("channelIds")) published_.erase(id_of(id));
+    } else {
+      answer.warnings.push_back("this bridge does not know '" + op.substr(0, 40) + "'");
+    }
+  } catch (const Json::exception&) {
+    answer.close = "this is no message of foxglove.websocket.v1";
+  }
+  return answer;
+}
+
+Session::Answer Session::on_binary(const std::string& bytes) {
+  Answer answer;
+  if (bytes.size() < 5 || bytes[0] != 1) {
+    answer.close = "this binary is no message of foxglove.websocket.v1";
+    return answer;
+  }
+  std::uint32_t channel = 0;
+  for (int k = 0; k < 4; ++k) {
+    channel |= std::uint32_t(static_cast<unsigned char>(bytes[std::size_t(k) + 1])) << (8 * k);
+  }
+  const auto found = published_.find(channel);
+  if (found == published_.end()) {
+    answer.warnings.push_back("channel " + std::to_string(channel) +
+                              " was not advertised by this client");
+    return answer;
+  }
+  ClientEvent event;
+  event.kind = ClientEvent::Kind::published;
+  event.client = client_;
+  event.topic = found->second.topic;
+  event.schema_name = found->second.schema_name;
+  event.encoding = found->second.encoding;
+  event.bytes.assign(bytes.begin() + 5, bytes.end());
+  answer.events.push_back(std::move(event));
+  return answer;
+}
+
+bool origin_allowed(const std::string& origin, const std::string& extra) {
+  if (origin.empty() || extra == "any") return true;
+  std::istringstream list(extra);
+  for (std::string one; std::getline(list, one, ',');) {
+    if (one == origin) return true;
+  }
+  const auto scheme = origin.find("://");
+  if (scheme == std::string::npos) return false;  // "null": a page that hides where it is from
+  const std::string kind = origin.substr(0, scheme);
+  if (kind != "http" && kind != "https") return true;
+  std::string host = origin.substr(scheme + 3);
+  const auto colon = host.rfind(':');
+  if (colon != std::string::npos && host.find(']', colon) == std::string::npos) {
+    host.resize(colon);
+  }
+  static constexpr const char* kHosts[] = {"localhost", "127.0.0.1", "[::1]"};
+  if (std::ranges::find(kHosts, host) != std::end(kHosts)) return true;
+  return kind == "https" && (host == "app.foxglove.dev" || host == "studio.foxglove.dev");
+}
+
+}  // namespace goshawk::viewer_bridge

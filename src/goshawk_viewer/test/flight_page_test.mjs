@@ -1,0 +1,83 @@
+// Opens a flight's page in headless Chromium: node flight_page_test.mjs FLIGHT.html SCREENSHOT.png
+import {pathToFileURL} from 'node:url';
+import {check, end, launch, open} from './browser.mjs';
+
+const [file, screenshot] = process.argv.slice(2);
+const url = pathToFileURL(file).href;
+
+async function lookAtIt() {
+  const browser = await launch();
+  const {page, complaints} = await open(browser, url);
+  await page.waitForTimeout(300);
+  const pixels = await page.evaluate(() => goshawk.view.pixels());
+  check(pixels.colors > 1000, `a picture, not a blank: ${pixels.colors} colours`);
+  const hidden = await page.evaluate(() => {
+    for (const layer of Object.values(goshawk.view.layers)) layer.visible = false;
+    const colors = goshawk.view.pixels().colors;
+    for (const name of ['obstacles', 'above', 'pruned', 'corridor', 'trajectory', 'flown', 'vehicle', 'goals', 'ground'])
+      goshawk.view.layers[name].visible = true;
+    return colors;
+  });
+  check(hidden === 1, `without its layers it is one colour: ${hidden}`);
+
+  // The slider moves the vehicle along the flown track, with its attitude.
+  const slide = t => page.evaluate(share => {
+    const slider = document.getElementById('time');
+    slider.value = Number(slider.min) + share * (slider.max - slider.min);
+    slider.dispatchEvent(new Event('input'));
+    const b = goshawk.view.body, q = b.quaternion, t = goshawk.now;
+    const near = goshawk.track.reduce((a, s) => Math.abs(s.t - t) < Math.abs(a.t - t) ? s : a);
+    return {p: b.position.toArray(), tilt: Math.hypot(q.x, q.y),
+            off: Math.hypot(...b.position.toArray().map((c, k) => c - near.p[k]))};
+  }, t);
+  const begin = await slide(0), middle = await slide(0.5), last = await slide(1);
+  const distance = (a, b) => Math.hypot(...a.p.map((c, k) => c - b.p[k]));
+  check(distance(begin, middle) > 1 && distance(middle, last) > 1,
+        `the slider moves the vehicle: ${distance(begin, middle).toFixed(2)} m, ${distance(middle, last).toFixed(2)} m`);
+  check(Math.max(begin.off, middle.off, last.off) < 0.05, 'it is where it was flown');
+  const tilts = [];
+  for (let k = 0; k <= 10; ++k) tilts.push((await slide(k / 10)).tilt);
+  check(Math.max(...tilts) > 0.02, `it tilts to accelerate: ${Math.max(...tilts).toFixed(3)}`);
+
+  // Play moves it by itself, and ends.
+  await slide(0.2);
+  await page.click('#play');
+  const ended = await page.waitForFunction(() => goshawk.now >= goshawk.end && !goshawk.playing, null,
+                                           {timeout: 20000}).then(() => true, () => false);
+  check(ended, 'it plays to the end and stops');
+
+  const legend = await page.evaluate(() => {
+    const box = document.getElementById('layer-corridor');
+    box.click();
+    return [goshawk.view.layers.corridor.visible, (box.click(), goshawk.view.layers.corridor.visible)];
+  });
+  check(!legend[0] && legend[1], 'the legend hides and shows');
+  await page.click('#theme');
+  check((await page.evaluate(() => goshawk.view.pixels())).colors > 1000, 'a light page as well');
+  await page.click('#theme');
+  await slide(0.45);
+  await page.waitForTimeout(300);
+  if (screenshot) await page.screenshot({path: screenshot});
+  check(complaints.length === 0, `no complaints: ${complaints}`);
+  await browser.close();
+}
+
+async function withoutWebGL() {
+  const browser = await launch(['--disable-3d-apis']);
+  const {page, complaints} = await open(browser, url);
+  check(await page.isVisible('#no-webgl'), 'without WebGL it says so');
+  check(/WebGL/.test(await page.textContent('#no-webgl')), 'in clear words');
+  const inked = await page.evaluate(() => {
+    goshawk.setTime(goshawk.end / 2);
+    goshawk.drawPlots();
+    const c = document.querySelector('#plots canvas');
+    return c.getContext('2d').getImageData(0, 0, c.width, c.height).data.some(v => v > 0);
+  });
+  check(inked, 'and still draws its plots');
+  check(complaints.filter(c => !/WebGL/i.test(c)).length === 0, `no other complaints: ${complaints}`);
+  await browser.close();
+}
+
+await lookAtIt();
+await withoutWebGL();
+end();

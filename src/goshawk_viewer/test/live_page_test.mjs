@@ -1,0 +1,64 @@
+// Opens the live page in headless Chromium and flies from it, while others misbehave:
+// node live_page_test.mjs URL BRIDGE X Y Z SCREENSHOT.png
+import {check, end, launch, open} from './browser.mjs';
+
+const [url, bridge, x, y, z, screenshot] = process.argv.slice(2);
+const goal = [x, y, z].map(Number);
+const browser = await launch();
+const {page, complaints} = await open(browser, url);
+const wait = (condition, ms, argument = null) =>
+    page.waitForFunction(condition, argument, {timeout: ms}).then(() => true, () => false);
+
+check(await wait(() => goshawk.view.maps.obstacles && goshawk.view.maps.grown && goshawk.pose, 20000),
+      'map and vehicle come');
+check((await page.evaluate(() => goshawk.view.pixels())).colors > 500, 'the map is drawn');
+
+// Aim at the goal's place and click there.
+await page.evaluate(height => {
+  const slider = document.getElementById('goal-height');
+  slider.step = 0.01;
+  slider.value = height;
+  slider.dispatchEvent(new Event('input'));
+}, goal[2]);
+await page.click('#goal');
+await page.mouse.click(...await page.evaluate(p => goshawk.view.project(p), goal));
+check(await wait(() => goshawk.state.mode === 'flying', 10000), 'the click makes it fly');
+const sent = await page.evaluate(() => goshawk.sent);
+check(Math.hypot(...sent.map((c, k) => c - goal[k])) < 0.05, `to where was clicked: ${sent}`);
+check(await wait(() => goshawk.leg && goshawk.view.layers.trajectory.children.length > 0 &&
+                       goshawk.view.layers.corridor.children.length > 0, 5000),
+      'corridor and trajectory are drawn');
+
+// Meanwhile other clients of the bridge misbehave; each is told why it is closed.
+const closed = await page.evaluate(address => Promise.all(
+    [s => s.send('garbage'), s => { for (let k = 0; k < 3000; ++k) s.send('{"op":"unsubscribe","subscriptionIds":[]}'); }]
+        .map(misbehave => new Promise(resolve => {
+          const socket = new WebSocket(address, ['foxglove.websocket.v1']);
+          socket.onopen = () => misbehave(socket);
+          socket.onclose = event => resolve(event.reason);
+        }))), bridge);
+check(/no message/.test(closed[0]), `garbage: ${closed[0]}`);
+check(/messages a second/.test(closed[1]), `a flood: ${closed[1]}`);
+const told = await page.evaluate(address => new Promise(resolve => {
+  const socket = new WebSocket(address, ['foxglove.websocket.v1']);
+  socket.onopen = () => socket.send(JSON.stringify({op: 'advertise', channels: [
+    {id: 1, topic: 'command', encoding: 'json', schemaName: 'goshawk_msgs/msg/ThrustAttitude'}]}));
+  socket.onmessage = event => {
+    const message = typeof event.data === 'string' ? JSON.parse(event.data) : {};
+    if (message.op === 'status') { resolve(message.message); socket.close(); }
+  };
+}), bridge);
+check(/may not publish/.test(told), `a command for the motors: ${told}`);
+
+await page.waitForTimeout(1200);
+if (screenshot) await page.screenshot({path: screenshot});
+check(await wait(() => goshawk.state.mode === 'arrived', 30000), 'it arrives all the same');
+const place = await page.evaluate(() => goshawk.view.body.position.toArray());
+check(Math.hypot(...place.map((c, k) => c - goal[k])) < 0.2, `the vehicle is drawn there: ${place}`);
+const flown = await page.evaluate(() => goshawk.track.length);
+check(flown > 50, `its track has ${flown} points`);
+const off = await page.evaluate(() => goshawk.curves.speed.length);
+check(off > 50, 'the plots are filled');
+check(complaints.length === 0, `no complaints: ${complaints}`);
+await browser.close();
+end();
