@@ -28,9 +28,10 @@ Json to_json(const conformance::Report& report) {
           {"message", report.passed() ? "" : "the stage does not conform: see items"},
           {"stage", report.stage},
           {"implementation", report.implementation},
-          {"latency", {{"p50_ms", 1e3 * report.latency_p50_s},
-                       {"p99_ms", 1e3 * report.latency_p99_s},
-                       {"max_ms", 1e3 * report.latency_max_s}}},
+          {"latency",
+           {{"p50_ms", 1e3 * report.latency_p50_s},
+            {"p99_ms", 1e3 * report.latency_p99_s},
+            {"max_ms", 1e3 * report.latency_max_s}}},
           {"items", items}};
 }
 
@@ -65,8 +66,8 @@ Result<conformance::Report> examine(const Options& o, const std::string& folder)
     options->domain = *domain;
     const auto file = launch_file(o, folder);
     if (!file) return file.error();
-    auto started = LaunchProcess::start({*file, "--log-dir", folder}, *domain,
-                                        folder + "/launch.log");
+    auto started =
+        LaunchProcess::start({*file, "--log-dir", folder}, *domain, folder + "/launch.log");
     if (!started) return started.error();
     launch.emplace(*std::move(started));
   }
@@ -91,7 +92,8 @@ int run(Options o) {
 
 int conform_command(const Arguments& arguments) {
   CLI::App app(
-      "Examine a stage, whoever wrote it: good and bad requests on its topics, every answer judged.",
+      "Examine a stage, whoever wrote it: good and bad requests on its topics, every answer "
+      "judged.",
       "goshawk conform");
   Options o;
   app.add_option("stage", o.kit.stage, "path_search, corridor_builder or trajectory_optimizer")
