@@ -19,6 +19,7 @@ constexpr const char* kPlan = "plan";
 /// All but the first are programs of goshawk_benchmarks, bench_NAME.
 constexpr Bench kBenches[] = {
     {kPlan, "latency of whole plans over DDS, by stage"},
+    {"stage", "STAGE --input RECORDING: one stage on recorded inputs, beside another's"},
     {"search", "grid searches beside a plain A*: time, nodes, length, set-up, growth"},
     {"scenario", "MAP.3dmap SCEN.3dscen: lengths and times on public voxel problems"},
     {"corridor", "corridor generators: time, volume, faces, obstacles cut"},

@@ -1,9 +1,12 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
+#include <functional>
+#include <set>
 
 #include "flight_folder.hpp"
 #include "fly_options.hpp"
@@ -165,9 +168,14 @@ Arguments launch_arguments(const FlyOptions& o, const Preparation& p) {
 
 class Flight {
  public:
+  /// @param recorded whether the recorder hears the planning stages
   Flight(const FlyOptions& options, const Preparation& preparation, runtime::Node& node,
-         LaunchProcess launch)
-      : options_(options), p_(preparation), record_(node), launch_(std::move(launch)) {}
+         LaunchProcess launch, std::function<bool()> recorded)
+      : options_(options),
+        p_(preparation),
+        record_(node),
+        launch_(std::move(launch)),
+        recorded_(std::move(recorded)) {}
 
   FlightOutcome fly() {
     FlightOutcome outcome;
@@ -229,6 +237,7 @@ class Flight {
     if (record_.flown().empty() || record_.goal_readers() == 0) {
       return fail(ErrorCode::stage_silent, "no odometry came, or nobody listens on goal_pose");
     }
+    if (!record_.listen(5.0, recorded_)) progress("the recorder does not hear all stages yet");
     progress("all stages ready");
     return success();
   }
@@ -291,6 +300,7 @@ class Flight {
   const Preparation& p_;
   FlightRecorder record_;
   LaunchProcess launch_;
+  std::function<bool()> recorded_;
 };
 
 Status check_domain_is_free(runtime::Context& context, runtime::Node& node, int domain) {
@@ -317,6 +327,22 @@ Result<std::optional<LaunchProcess>> start_recorder(const FlyOptions& options, c
   return std::optional<LaunchProcess>(*std::move(recorder));
 }
 
+// The recorder joins a topic once it has found who writes it: before that, messages are lost to it.
+bool hears_planning(const runtime::Context& context, pid_t recorder) {
+  std::string prefix;
+  for (const auto& participant : context.participants()) {
+    if (participant.name == "goshawk_" + std::to_string(recorder)) prefix = participant.guid_prefix;
+  }
+  std::set<std::string> heard;
+  for (const auto& endpoint : context.endpoints()) {
+    if (!endpoint.writer && endpoint.participant == prefix) heard.insert(endpoint.topic);
+  }
+  static constexpr const char* kTopics[] = {"plan_request", "path", "corridor", "trajectory"};
+  return std::ranges::all_of(kTopics, [&](const std::string& topic) {
+    return std::ranges::any_of(heard, [&](const auto& h) { return h.ends_with("/" + topic); });
+  });
+}
+
 Result<Json> fly(const FlyOptions& options, const Preparation& p) {
   const auto domain = private_domain();
   if (!domain) return domain.error();
@@ -331,7 +357,8 @@ Result<Json> fly(const FlyOptions& options, const Preparation& p) {
   auto launch =
       LaunchProcess::start(launch_arguments(options, p), *domain, p.folder + "/logs/launch.log");
   if (!launch) return launch.error();
-  Flight flight(options, p, node, *std::move(launch));
+  Flight flight(options, p, node, *std::move(launch),
+                [&] { return !*recorder || hears_planning(**context, (*recorder)->pid()); });
   const FlightOutcome outcome = flight.fly();
   if (*recorder) (*recorder)->stop();
   const Json summary = summary_json(outcome, flight.record(), p.folder);

@@ -26,6 +26,7 @@ class LaunchProcess {
   LaunchProcess& operator=(LaunchProcess&&) = delete;
   ~LaunchProcess() { stop(); }
 
+  pid_t pid() const { return pid_; }
   /// @return the exit status if it has ended by itself
   std::optional<int> ended();
   /// Asks it to stop, waits until it has; nothing where it has ended already.

@@ -4,8 +4,8 @@
 #include <limits>
 
 #include "goshawk/conversions/plan.hpp"
-#include "goshawk/corridor_builder/corridor_builder.hpp"
 #include "goshawk/corridor_builder/config.hpp"
+#include "goshawk/corridor_builder/corridor_builder.hpp"
 #include "goshawk/path_search/config.hpp"
 #include "goshawk/path_search/path_search.hpp"
 
@@ -80,7 +80,8 @@ std::vector<msg::Path> make_paths(const World& world, Random& random, int count)
 
 Cases<msg::PlanRequest> search_cases(const World& world, Random& random, int count) {
   Cases<msg::PlanRequest> cases{.good = {}, .bad = {}, .no_map = "no_map"};
-  for (auto& path : make_paths(world, random, count)) cases.good.push_back({"", path.request(), {}});
+  for (auto& path : make_paths(world, random, count))
+    cases.good.push_back({"", path.request(), {}});
   const msg::PlanRequest good = cases.good.front().input;
   add_bad_requests(cases, good);
   const auto add = [&](const char* name, const char* code, const Vec3& start, const Vec3& goal) {
@@ -105,8 +106,7 @@ Cases<msg::Path> corridor_cases(const World& world, Random& random, int count) {
     change(bad.input);
     cases.bad.push_back(std::move(bad));
   };
-  add("a path in another frame", {"wrong_frame"},
-      [](auto& p) { p.header().frame_id("odom"); });
+  add("a path in another frame", {"wrong_frame"}, [](auto& p) { p.header().frame_id("odom"); });
   add("a path of one point", {"invalid_input"}, [](auto& p) { p.waypoints().resize(1); });
   add("a path of no points", {"invalid_input"}, [](auto& p) { p.waypoints().clear(); });
   add("a waypoint that is not a number", {"invalid_input"},
@@ -141,8 +141,7 @@ Cases<msg::Corridor> trajectory_cases(const World& world, Random& random, int co
     change(bad.input);
     cases.bad.push_back(std::move(bad));
   };
-  add("a corridor in another frame", {"wrong_frame"},
-      [](auto& c) { c.header().frame_id("odom"); });
+  add("a corridor in another frame", {"wrong_frame"}, [](auto& c) { c.header().frame_id("odom"); });
   add("a corridor of no polytopes", {"invalid_input"}, [](auto& c) { c.polytopes().clear(); });
   add("a polytope whose sizes disagree", {"invalid_input"},
       [](auto& c) { c.polytopes().front().normals().pop_back(); });

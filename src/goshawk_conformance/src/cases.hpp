@@ -12,7 +12,7 @@ namespace goshawk::conformance {
 /// A request, and what must come back.
 template <typename Input>
 struct Case {
-  std::string name;             // "start in an obstacle"; empty for a good one
+  std::string name;  // "start in an obstacle"; empty for a good one
   Input input;
   std::set<std::string> codes;  // one of these for a bad one; empty: a result
 };

@@ -29,8 +29,8 @@ bool is_blocked(const VoxelGrid& grid, const Vec3& p) {
   const double slack = kTolerance / grid.geometry.resolution_m;
   for (const double side : {-slack, slack}) {  // on a face it belongs to both voxels
     const Vec3 q = g.array() + side;
-    if (!grid.occupied.test({int(std::floor(q.x())), int(std::floor(q.y())),
-                             int(std::floor(q.z()))})) {
+    if (!grid.occupied.test(
+            {int(std::floor(q.x())), int(std::floor(q.y())), int(std::floor(q.z()))})) {
       return false;
     }
   }
@@ -175,7 +175,8 @@ std::string fault_of(const msg::Corridor& corridor, const msg::Path& sent, const
     return "it does not join the ends of the path";
   }
   for (std::size_t k = 0; k < polytopes.size(); ++k) {
-    const double out = std::max(outside(polytopes[k], vec(w[k])), outside(polytopes[k], vec(w[k + 1])));
+    const double out =
+        std::max(outside(polytopes[k], vec(w[k])), outside(polytopes[k], vec(w[k + 1])));
     if (!(out <= kTolerance)) return at("polytope", k, "does not hold its waypoints [m]", out);
     if (auto fault = fault_of_space(polytopes[k], k, grid); !fault.empty()) return fault;
   }

@@ -30,10 +30,11 @@ Result<Report> conform(runtime::Context& context, const Options& o) {
     return examiner.examine(trajectory_cases(world, random, o.requests));
   }
   const std::string near = runtime::nearest_name(o.stage, stages());
-  return fail(ErrorCode::invalid_parameter,
-              "there is no conformance kit for '" + o.stage + "'" +
-                  (near.empty() ? ": path_search, corridor_builder and trajectory_optimizer have one"
-                                : "; did you mean " + near + "?"));
+  return fail(
+      ErrorCode::invalid_parameter,
+      "there is no conformance kit for '" + o.stage + "'" +
+          (near.empty() ? ": path_search, corridor_builder and trajectory_optimizer have one"
+                        : "; did you mean " + near + "?"));
 }
 
 }  // namespace goshawk::conformance

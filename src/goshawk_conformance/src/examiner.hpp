@@ -98,9 +98,9 @@ class Examiner {
   Status wait_for_stage() {
     const bool there = spin_until(options_.ready_timeout_s, [&] { return inputs_.matched() > 0; });
     if (!there) {
-      return fail(ErrorCode::stage_silent,
-                  "nobody reads " + std::string(input_topic_) + ": is " + options_.stage +
-                      " running, in this domain and namespace?");
+      return fail(ErrorCode::stage_silent, "nobody reads " + std::string(input_topic_) + ": is " +
+                                               options_.stage +
+                                               " running, in this domain and namespace?");
     }
     spin_until(2.0, [&] { return ready_; });
     spin_until(0.5, [] { return false; });  // its answers' writers are found as well
@@ -179,7 +179,8 @@ class Examiner {
   void check_again(const Input& input, const Output& first, Tally& again) {
     Input sent;
     const Answer answer = ask(input, sent);
-    if (answer.outputs.size() != 1) return again.check(false, "the second time" + what_came(answer));
+    if (answer.outputs.size() != 1)
+      return again.check(false, "the second time" + what_came(answer));
     const auto bare = [](Output m) {  // without what may differ
       m.header({});
       m.request({});
@@ -240,14 +241,16 @@ class Examiner {
     Random random(options_.seed);
     for (int k = 0; k < 10; ++k) {
       std::vector<unsigned char> bytes = {0, 1, 0, 0};
-      for (int n = random.below(600); n > 0; --n) bytes.push_back((unsigned char)(random.below(256)));
+      for (int n = random.below(600); n > 0; --n)
+        bytes.push_back((unsigned char)(random.below(256)));
       (void)raw.publish_raw(&bytes);
     }
     spin_until(0.2, [] { return false; });
     Input sent;
     const Answer answer = ask(good, sent);
-    report_.items.push_back({"lives on after garbage", answer.outputs.size() == 1,
-                             answer.outputs.size() == 1 ? "" : "a good request" + what_came(answer)});
+    report_.items.push_back(
+        {"lives on after garbage", answer.outputs.size() == 1,
+         answer.outputs.size() == 1 ? "" : "a good request" + what_came(answer)});
   }
 
   const Options& options_;

@@ -47,7 +47,8 @@ class ForeignSearch {
     const Vec3& goal = request->goal.position;
     auto path = search_.plan(start, goal);
     if (!path) return reporter_.failed(m.id(), path.error());
-    answer(m, fault_ == Fault::through_walls ? std::vector<Vec3>{start, goal} : path->waypoints_map);
+    answer(m,
+           fault_ == Fault::through_walls ? std::vector<Vec3>{start, goal} : path->waypoints_map);
   }
 
   void answer(msg::PlanRequest request, const std::vector<Vec3>& waypoints) {

@@ -13,7 +13,7 @@ namespace goshawk::conformance {
 
 /// One thing that every implementation of a stage owes to the others.
 struct Item {
-  std::string name;    // "echoes the request whole"
+  std::string name;  // "echoes the request whole"
   bool passed = false;
   std::string detail;  // what was seen, or what is wrong and in which answer
 };
@@ -30,13 +30,13 @@ struct Report {
 };
 
 struct Options {
-  std::string stage;          // path_search, corridor_builder, trajectory_optimizer
+  std::string stage;  // path_search, corridor_builder, trajectory_optimizer
   std::string node_namespace = "/";
-  int requests = 40;          // good ones
-  std::uint64_t seed = 1;     // of the world and the requests
-  double timeout_s = 2.0;     // longest wait for an answer
+  int requests = 40;       // good ones
+  std::uint64_t seed = 1;  // of the world and the requests
+  double timeout_s = 2.0;  // longest wait for an answer
   double ready_timeout_s = 20.0;
-  bool fresh = true;          // the stage has seen no map yet
+  bool fresh = true;  // the stage has seen no map yet
 };
 
 /// Stages that can be examined.
