@@ -104,7 +104,8 @@ class Flyer:
             status, result = self.call(
                 "fly", "--map", world, "--random", self.options.goals, "--seed",
                 mission.world_seed, "--launch", self.options.launch, "--output", folder,
-                "--no-record", *mission.simulator_parameters())
+                "--no-record", *mission.simulator_parameters(),
+                *(word for p in self.options.parameters for word in ("-p", p)))
         return {**mission.conditions(), **outcome(status, result, folder)}
 
 
@@ -248,11 +249,18 @@ def parse_options():
     add("--noise", type=numbers(0, 1), default=[0.0], help="[m] of the odometry: 0,0.005,...")
     add("--size", default="10,10,4", help="[m] x,y,z of the worlds (default 10,10,4)")
     add("--jobs", type=count, default=2, help="missions at once (default 2)")
-    add("--launch", default="flight_container", help="launch file (default flight_container)")
+    add("--launch", default="flight_lock_step", help="launch file (default flight_lock_step, "
+        "where missions repeat bit for bit; flight for a process each)")
+    add("-p", dest="parameters", action="append", metavar="NODE:NAME:=VALUE", help="parameter of a "
+        "stage; may repeat (default in lock step: simulator:speed:=0, as fast as it goes)")
     add("--output", type=pathlib.Path, default=pathlib.Path("campaign"), help="folder")
     add("--json", action="store_true", help="print one JSON object")
     add("--prefix", required=True, help=argparse.SUPPRESS)
-    return parser.parse_args()
+    options = parser.parse_args()
+    if options.parameters is None:
+        in_lock_step = options.launch == "flight_lock_step"
+        options.parameters = ["simulator:speed:=0"] if in_lock_step else []
+    return options
 
 
 def main():
