@@ -95,6 +95,18 @@ class ScriptsTest(unittest.TestCase):
         self.assertEqual((result.returncode, result.stdout, result.stderr), (0, "", ""))
         self.assertEqual(self.calls(), [])
 
+    def test_setup_for_tests_wants_a_browser(self):
+        env = self.fake_debian(self.all_installed(), user=1000)
+        result = run(TOOLS / "setup", "--tests", env=env)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("apt-get install chromium nodejs npm", result.stderr)
+
+    def test_setup_for_tests_does_without_npm(self):
+        installed = self.all_installed() + "ii chromium\\nii nodejs\\nii npm\\n"
+        result = run(TOOLS / "setup", "--tests", env=self.fake_debian(installed, user=1000))
+        self.assertEqual((result.returncode, result.stderr), (0, ""))  # its tests are skipped
+        self.assertEqual(self.calls(), [])
+
     def test_setup_installs_only_what_is_missing(self):
         env = self.fake_debian(self.all_installed(except_for=["g++", "cmake"]), user=0)
         result = run(TOOLS / "setup", env=env)

@@ -142,7 +142,8 @@ void append_piece(std::string& text, const BezierPiece& piece) {
   append(text, piece.duration_s);
   text += ",\"points\":";
   std::vector<Vec3> points;
-  for (int k = 0; k < piece.control_points.cols(); ++k) points.push_back(piece.control_points.col(k));
+  for (int k = 0; k < piece.control_points.cols(); ++k)
+    points.push_back(piece.control_points.col(k));
   append_points(text, points);
   text += '}';
 }
@@ -165,7 +166,8 @@ std::vector<FlownSample> thinned(const std::vector<FlownSample>& flown) {
   std::vector<FlownSample> kept;
   for (const auto& sample : flown) {
     const bool last = &sample == &flown.back();
-    if (kept.empty() || last || sample.t_s - kept.back().t_s >= kLeastStep_s) kept.push_back(sample);
+    if (kept.empty() || last || sample.t_s - kept.back().t_s >= kLeastStep_s)
+      kept.push_back(sample);
   }
   return kept;
 }
@@ -213,8 +215,8 @@ Status write_flight_page(const Flight& flight, const std::filesystem::path& page
   const std::string page{std::istreambuf_iterator<char>(in), {}};
   const std::size_t mark = page.find(kMark);
   if (!in || mark == std::string::npos) {
-    return fail(ErrorCode::io_failed, page_template.string() +
-                                          " is no page template: is goshawk_viewer installed?");
+    return fail(ErrorCode::io_failed,
+                page_template.string() + " is no page template: is goshawk_viewer installed?");
   }
   return write_file(file, page.substr(0, mark) + flight_json(flight, summary_json) +
                               page.substr(mark + kMark.size()));

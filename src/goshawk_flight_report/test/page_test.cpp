@@ -6,7 +6,6 @@
 #include <fstream>
 #include <iterator>
 
-
 namespace goshawk::flight_report {
 namespace {
 

@@ -1,8 +1,8 @@
+#include <spdlog/spdlog.h>
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <spdlog/spdlog.h>
 #include <sstream>
 #include <thread>
 
@@ -45,8 +45,8 @@ using namespace goshawk::runtime;
 
 constexpr double kLookAround_s = 0.5;
 constexpr double kServe_s = 0.01;
-constexpr std::size_t kKept = 20;                  // newest messages of a latched topic, ...
-constexpr std::size_t kKeptBytes = 1U << 20U;      // ... or one, where they are larger
+constexpr std::size_t kKept = 20;              // newest messages of a latched topic, ...
+constexpr std::size_t kKeptBytes = 1U << 20U;  // ... or one, where they are larger
 
 std::set<std::string> split(const std::string& list) {
   std::set<std::string> words;
@@ -142,16 +142,23 @@ class ViewerBridgeComponent : public Component {
     for (const auto& line : server_->take_log()) node_.log().info("{}", line);
     for (auto& event : server_->take_events()) {
       switch (event.kind) {
-        case ClientEvent::Kind::subscribed: on_subscribed(event); break;
-        case ClientEvent::Kind::advertised: publisher_for(event); break;
-        case ClientEvent::Kind::published: on_published(event); break;
+        case ClientEvent::Kind::subscribed:
+          on_subscribed(event);
+          break;
+        case ClientEvent::Kind::advertised:
+          publisher_for(event);
+          break;
+        case ClientEvent::Kind::published:
+          on_published(event);
+          break;
       }
     }
   }
 
   void on_subscribed(const ClientEvent& event) {
     Topic& topic = topics_.at(event.channel);
-    for (const auto& m : topic.kept) server_->send_to(event.client, event.channel, m.stamp_ns, m.cdr);
+    for (const auto& m : topic.kept)
+      server_->send_to(event.client, event.channel, m.stamp_ns, m.cdr);
     if (topic.read) return;
     topic.read = true;
     // Readers only ask for what every writer offers.

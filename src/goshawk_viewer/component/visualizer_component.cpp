@@ -78,9 +78,8 @@ class VisualizerComponent : public Component {
     if (path_.request().id() == received->request.id) {
       array.markers().push_back(line_marker("path as searched", conversions::from_msg(path_.raw()),
                                             0.02, {0.79, 0.64, 1.0}, now_ns));
-      array.markers().push_back(line_marker("pruned path",
-                                            conversions::from_msg(path_.waypoints()), 0.025,
-                                            {1.0, 0.62, 0.26}, now_ns));
+      array.markers().push_back(line_marker("pruned path", conversions::from_msg(path_.waypoints()),
+                                            0.025, {1.0, 0.62, 0.26}, now_ns));
     }
     for (auto& marker : corridor_markers(received->polytopes, now_ns)) {
       array.markers().push_back(std::move(marker));
@@ -93,8 +92,7 @@ class VisualizerComponent : public Component {
   void on_odometry(const nav_msgs::msg::Odometry& m) {
     const auto state = conversions::from_msg(m);
     if (!state) return;  // the tracker says what is wrong with it
-    if (!track_.empty() &&
-        (track_.back() - state->position_map).norm() < config_.track_step_m) {
+    if (!track_.empty() && (track_.back() - state->position_map).norm() < config_.track_step_m) {
       return;
     }
     if (track_.size() >= kMostTrack) track_.erase(track_.begin(), track_.begin() + kMostTrack / 2);

@@ -37,8 +37,7 @@ Goshawk.FlightPage = class extends Goshawk.Page {
     view.setFlown(this.track);
     const map = view.maps.obstacles || view.maps.grown;
     if (map) {
-      const highest = Math.max(map.origin[2] + map.resolution, ...this.framed().map(p => p[2]));
-      this.setCutRange(map.origin[2], map.upper(2), Math.min(map.upper(2), highest + 0.3));
+      this.setCutRange(map.origin[2], map.upper(2), view.bestCut(this.framed()));
     } else {
       $('cut-row').hidden = true;
     }

@@ -57,29 +57,25 @@ Goshawk.Voxels = class {
 Goshawk.voxelFaces = function(voxels, z0, z1) {
   const [nx, ny, nz] = voxels.size;
   const cells = voxels.cells;
-  const stride = [1, nx, nx * ny];
   const solid = (x, y, z) => x >= 0 && y >= 0 && z >= z0 && x < nx && y < ny && z < z1 &&
       cells[x + nx * (y + ny * z)] === 1;
   const cell = [], face = [], ao = [];
-  const p = [0, 0, 0];
-  const corner = (q, u, v, a, b) => {
-    const at = (i, j) => { const r = [...q]; r[u] += i; r[v] += j; return solid(...r) ? 1 : 0; };
-    const s = at(a, 0), t = at(0, b);
-    return s && t ? 0 : 3 - s - t - at(a, b);
-  };
+  const unit = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
   for (let z = z0; z < z1; ++z) for (let y = 0; y < ny; ++y) for (let x = 0; x < nx; ++x) {
-    const index = x + nx * y + stride[2] * z;
-    if (!cells[index]) continue;
+    if (!cells[x + nx * (y + ny * z)]) continue;
     for (let k = 0; k < 6; ++k) {
-      const axis = k >> 1, step = k & 1 ? -1 : 1;
-      p[0] = x; p[1] = y; p[2] = z;
-      p[axis] += step;
-      if (solid(p[0], p[1], p[2])) continue;
-      const u = (axis + 1) % 3, v = (axis + 2) % 3;
+      const axis = k >> 1, step = k & 1 ? -1 : 1, n = unit[axis];
+      const px = x + step * n[0], py = y + step * n[1], pz = z + step * n[2];
+      if (solid(px, py, pz)) continue;
+      const u = unit[(axis + 1) % 3], v = unit[(axis + 2) % 3];
       cell.push(x, y, z);
       face.push(k);
-      ao.push(corner(p, u, v, -1, -1), corner(p, u, v, 1, -1), corner(p, u, v, -1, 1),
-              corner(p, u, v, 1, 1));
+      for (let c = 0; c < 4; ++c) {
+        const a = c & 1 ? 1 : -1, b = c & 2 ? 1 : -1;
+        const ux = a * u[0], uy = a * u[1], uz = a * u[2], vx = b * v[0], vy = b * v[1], vz = b * v[2];
+        const s = solid(px + ux, py + uy, pz + uz), t = solid(px + vx, py + vy, pz + vz);
+        ao.push(s && t ? 0 : 3 - s - t - solid(px + ux + vx, py + uy + vy, pz + uz + vz));
+      }
     }
   }
   return {cell: new Uint16Array(cell), face: new Uint8Array(face), ao: new Uint8Array(ao)};

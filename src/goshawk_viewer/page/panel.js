@@ -44,6 +44,7 @@ Goshawk.Page = class {
       box.checked = !this.view || this.view.layers[name].visible;
       box.addEventListener('change', () => {
         this.view.layers[name].visible = box.checked;
+        if (['obstacles', 'above', 'grown'].includes(name)) this.view.drawMaps();  // made when shown
         this.view.redraw = true;
       });
       const swatch = document.createElement('i');

@@ -6,7 +6,7 @@ Goshawk.themes = {
   dark: {sky: 0x0d1320, ground: 0x141c2d, grid: 0x3a4a68, low: 0x46536e, high: 0xa9b6cf, ink: 0.45,
          ghost: 0x8fa3c8, grown: 0x5b7cc0, raw: 0xc9a4ff, pruned: 0xff9f43, corridor: 0x39c5e8,
          flown: 0xffffff, body: 0xe9eef8, accent: 0xff4d5e, goal: 0x5df2a0},
-  light: {sky: 0xf3f5f9, ground: 0xe7ebf2, grid: 0xb9c3d4, low: 0x8e9ab0, high: 0xdfe5ee, ink: 0.5,
+  light: {sky: 0xf3f5f9, ground: 0xe7ebf2, grid: 0xb9c3d4, low: 0xaab5c8, high: 0xf4f6fa, ink: 0.5,
           ghost: 0x5f7196, grown: 0x4c6fb8, raw: 0x7c4dbc, pruned: 0xd96b00, corridor: 0x0a86b0,
           flown: 0x14181f, body: 0x20283a, accent: 0xd3122b, goal: 0x0b8a4b},
 };
@@ -174,12 +174,13 @@ Goshawk.View = class {
     const radius = this.bounds().getBoundingSphere(new G3.Sphere()).radius;
     this.haze = [2.2 * radius, 6.5 * radius];
     const t = this.theme;
+    const shown = name => this.layers[name].visible;
     if (obstacles) {
       const top = obstacles.layersBelow(this.cut);
-      this.addVoxels('obstacles', obstacles, 0, top, t.low, t.high, 1);
-      this.addVoxels('above', obstacles, top, obstacles.size[2], t.ghost, t.ghost, 0.05);
+      if (shown('obstacles')) this.addVoxels('obstacles', obstacles, 0, top, t.low, t.high, 1);
+      if (shown('above')) this.addVoxels('above', obstacles, top, obstacles.size[2], t.ghost, t.ghost, 0.05);
     }
-    if (grown) {
+    if (grown && shown('grown')) {
       const solid = obstacles ? 0.16 : 1;
       const colors = obstacles ? [t.grown, t.grown] : [t.low, t.high];
       this.addVoxels('grown', grown, 0, grown.layersBelow(this.cut), ...colors, solid);
@@ -431,6 +432,18 @@ Goshawk.View = class {
     const w = this.canvas.clientWidth || 1, h = this.canvas.clientHeight || 1;
     const shift = w > 900 ? 120 : 0;
     this.camera.setViewOffset(w, h, -shift, 0, w, h);
+  }
+
+  // The highest cut from which most of the points are seen from above: below ceilings, above trees.
+  bestCut(points) {
+    const map = this.maps.obstacles || this.maps.grown;
+    const heights = points.map(p => p[2]).sort((a, b) => a - b);
+    const highest = Math.min(map.upper(2), (heights.length ? heights[heights.length - 1] : map.upper(2)) + 0.3);
+    const lowest = heights.length ? heights[heights.length >> 1] : highest;
+    for (this.cut = highest; this.cut > lowest; this.cut -= map.resolution) {
+      if (this.hiddenShare(points, [0, 0, 1]) < 0.1) return this.cut;
+    }
+    return points.length ? lowest : highest;
   }
 
   // The share of the points that obstacles below the cut hide from far away.

@@ -52,7 +52,8 @@ class Reader {
  private:
   void widen(Index3 p, int edge) {
     low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x + edge), std::max(high.y, p.y + edge), std::max(high.z, p.z + edge)};
+    high = {std::max(high.x, p.x + edge), std::max(high.y, p.y + edge),
+            std::max(high.z, p.z + edge)};
   }
 
   std::span<const std::uint8_t> data_;

@@ -28,12 +28,9 @@ struct Client {
 };
 
 Json to_json(const Channel& c) {
-  return {{"id", c.id},
-          {"topic", c.topic},
-          {"encoding", "cdr"},
-          {"schemaName", c.schema_name},
-          {"schema", c.schema},
-          {"schemaEncoding", "ros2msg"}};
+  return {{"id", c.id},         {"topic", c.topic},
+          {"encoding", "cdr"},  {"schemaName", c.schema_name},
+          {"schema", c.schema}, {"schemaEncoding", "ros2msg"}};
 }
 
 Json to_json(StatusLevel level, const std::string& sentence) {

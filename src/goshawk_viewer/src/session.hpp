@@ -14,7 +14,7 @@ namespace goshawk::viewer_bridge {
 class Session {
  public:
   struct Answer {
-    std::string close;                 // why the client must go; empty: it may stay
+    std::string close;                  // why the client must go; empty: it may stay
     std::vector<std::string> warnings;  // to be told to the client
     std::vector<ClientEvent> events;
   };

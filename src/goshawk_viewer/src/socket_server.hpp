@@ -15,8 +15,7 @@ class SocketServer {
  public:
   struct Callbacks {  // called in the server's thread; they may call send(), close() and cut()
     /// @return why the client is refused, or nothing
-    std::function<std::string(const std::vector<std::string>& protocols,
-                              const std::string& origin)>
+    std::function<std::string(const std::vector<std::string>& protocols, const std::string& origin)>
         validate;
     std::function<void(std::uint64_t client)> opened;
     std::function<void(std::uint64_t client)> closed;
@@ -24,8 +23,8 @@ class SocketServer {
   };
   struct Options {
     std::string address;
-    std::uint16_t port = 0;  // 0: any that is free
-    std::string protocol;    // selected for every client
+    std::uint16_t port = 0;           // 0: any that is free
+    std::string protocol;             // selected for every client
     std::size_t largest_message = 0;  // [byte] from a client; it is closed beyond
   };
 

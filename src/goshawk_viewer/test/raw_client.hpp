@@ -20,7 +20,8 @@ class RawClient {
     std::string payload;
   };
 
-  explicit RawClient(int port, int receive_buffer = 0) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
+  explicit RawClient(int port, int receive_buffer = 0)
+      : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
     if (receive_buffer > 0) {
       ::setsockopt(socket_, SOL_SOCKET, SO_RCVBUF, &receive_buffer, sizeof receive_buffer);
     }
@@ -43,10 +44,11 @@ class RawClient {
   /// @return the head of the server's answer
   std::string shake_hands(const std::string& protocol = "foxglove.websocket.v1",
                           const std::string& origin = "") {
-    write("GET / HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
-          "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\nSec-WebSocket-Version: 13\r\n" +
-          (protocol.empty() ? "" : "Sec-WebSocket-Protocol: " + protocol + "\r\n") +
-          (origin.empty() ? "" : "Origin: " + origin + "\r\n") + "\r\n");
+    write(
+        "GET / HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+        "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\nSec-WebSocket-Version: 13\r\n" +
+        (protocol.empty() ? "" : "Sec-WebSocket-Protocol: " + protocol + "\r\n") +
+        (origin.empty() ? "" : "Origin: " + origin + "\r\n") + "\r\n");
     while (buffer_.find("\r\n\r\n") == std::string::npos && fill(3000)) {
     }
     const auto end = buffer_.find("\r\n\r\n");

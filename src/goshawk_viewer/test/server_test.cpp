@@ -55,9 +55,9 @@ TEST_F(BridgeServer, TellsItsChannelsAndSendsToWhoSubscribed) {
   EXPECT_THAT(head, HasSubstr("foxglove.websocket.v1"));
   EXPECT_THAT(client.wait_for(1), HasSubstr(R"("op":"serverInfo")"));
   const std::string channels = client.wait_for(1);
-  for (const char* part : {R"("op":"advertise")", R"("id":3)", R"("topic":"/odom")",
-                           R"("encoding":"cdr")", R"("schemaEncoding":"ros2msg")",
-                           R"("schemaName":"nav_msgs/msg/Odometry")"}) {
+  for (const char* part :
+       {R"("op":"advertise")", R"("id":3)", R"("topic":"/odom")", R"("encoding":"cdr")",
+        R"("schemaEncoding":"ros2msg")", R"("schemaName":"nav_msgs/msg/Odometry")"}) {
     EXPECT_THAT(channels, HasSubstr(part));
   }
   server_->advertise({4, "/path", "nav_msgs/msg/Path", ""});
@@ -141,7 +141,8 @@ TEST_F(BridgeServer, DropsWhatASlowReaderDoesNotReadAndThenTheReader) {
   EXPECT_TRUE(comes_true([&] { return server_->clients() == 1; }));
   EXPECT_GT(got, 10u);
   bool told = false;
-  for (const auto& line : server_->take_log()) told = told || line.find("does not read") < line.size();
+  for (const auto& line : server_->take_log())
+    told = told || line.find("does not read") < line.size();
   EXPECT_TRUE(told);
 }
 

@@ -10,7 +10,8 @@ namespace goshawk::flight_report {
 /// A flight as one HTML file that opens by double click and needs nothing else: map, path,
 /// corridor, trajectory, flown track, a vehicle that moves with a time slider, plots.
 ///
-/// @param page_template the page that goshawk_viewer installs, with "@FLIGHT@" where the flight goes
+/// @param page_template the page that goshawk_viewer installs, with "@FLIGHT@" where the flight
+/// goes
 /// @param summary_json what came of the flight (docs/cli.md), or "null"
 /// @return invalid_input where Flight::check() fails; io_failed where the template cannot be read
 /// or is none, or the file cannot be written

@@ -15,11 +15,11 @@ struct ServerOptions {
   std::string address = "127.0.0.1";  // IPv4 of this machine; who can reach it can send goals
   int port = 8765;                    // 0: any that is free
   std::string name = "goshawk";
-  std::string origins;                       // web pages beyond local ones, with commas, or "any"
-  int clients = 16;                          // at once
-  std::size_t queue_bytes = 32U << 20U;      // unsent to one client; what is beyond is dropped
-  double full_queue_s = 10.0;                // a client that never reads is closed after that
-  int client_messages_per_s = 500;           // a client that sends more is closed
+  std::string origins;                   // web pages beyond local ones, with commas, or "any"
+  int clients = 16;                      // at once
+  std::size_t queue_bytes = 32U << 20U;  // unsent to one client; what is beyond is dropped
+  double full_queue_s = 10.0;            // a client that never reads is closed after that
+  int client_messages_per_s = 500;       // a client that sends more is closed
 };
 
 /// A topic as clients see it.
