@@ -35,7 +35,9 @@ Json path_json(const RequestRecord& record) {
           {"pruned_length_m", record.path.length()},
           {"waypoints_raw", record.path.raw().size()},
           {"waypoints", record.path.waypoints().size()},
-          {"expanded", record.path.expanded()}};
+          {"expanded", record.path.expanded()},
+          {"points", to_json(conversions::from_msg(record.path.waypoints()))},
+          {"raw_points", to_json(conversions::from_msg(record.path.raw()))}};
 }
 
 Json corridor_json(const RequestRecord& record) {
