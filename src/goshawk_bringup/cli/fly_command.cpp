@@ -307,8 +307,8 @@ Status check_domain_is_free(runtime::Context& context, runtime::Node& node, int 
 }
 
 // A process of its own: a slow disk must not be felt in flight.
-Result<std::optional<LaunchProcess>> start_recorder(const FlyOptions& options,
-                                                    const Preparation& p, int domain) {
+Result<std::optional<LaunchProcess>> start_recorder(const FlyOptions& options, const Preparation& p,
+                                                    int domain) {
   if (options.no_record) return std::optional<LaunchProcess>();
   auto recorder = LaunchProcess::start_verb(
       {"record", "--stop-with-parent", "--overwrite", "-o", p.folder + "/flight.mcap"}, domain,

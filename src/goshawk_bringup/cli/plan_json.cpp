@@ -14,12 +14,18 @@ Json stages_json(const std::vector<StageTime>& stages) {
 }
 
 Json path_json(const path_search::PlannedPath& path) {
-  return {{"raw_length_m", path.raw_length_m},    {"pruned_length_m", path.pruned_length_m},
-          {"waypoints_raw", path.raw_map.size()}, {"waypoints", path.waypoints_map.size()},
-          {"expanded", path.counters.expanded},   {"points", to_json(path.waypoints_map)},
-          {"cost", path.cost},                    {"goal", path.goal},
-          {"start_moved_m", path.start_moved_m},  {"goal_moved_m", path.goal_moved_m},
-          {"cut_off", path.cut_off},              {"note", path.note()}};
+  return {{"raw_length_m", path.raw_length_m},
+          {"pruned_length_m", path.pruned_length_m},
+          {"waypoints_raw", path.raw_map.size()},
+          {"waypoints", path.waypoints_map.size()},
+          {"expanded", path.counters.expanded},
+          {"points", to_json(path.waypoints_map)},
+          {"cost", path.cost},
+          {"goal", path.goal},
+          {"start_moved_m", path.start_moved_m},
+          {"goal_moved_m", path.goal_moved_m},
+          {"cut_off", path.cut_off},
+          {"note", path.note()}};
 }
 
 Json polytope_json(const Polytope& p) {

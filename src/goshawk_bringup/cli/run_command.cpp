@@ -12,6 +12,7 @@ constexpr const char* kRunHelp =
     "Starts one component, or several in one process, until Ctrl-C.\n"
     "goshawk param describe COMPONENT lists its parameters.\n";
 
+// Becomes a script of ours. @return only where that fails
 int become_script(const std::string& name, const Arguments& arguments) {
   Arguments command{"/usr/bin/python3", install_prefix() + "/lib/goshawk/" + name, "--prefix",
                     install_prefix()};
@@ -29,6 +30,10 @@ int run_command(const Arguments& arguments) {
   Arguments command{install_prefix() + "/bin/goshawk_container"};
   command.insert(command.end(), arguments.begin(), arguments.end());
   return become(command);
+}
+
+int campaign_command(const Arguments& arguments) {
+  return become_script("campaign.py", arguments);
 }
 
 int launch_command(const Arguments& arguments) {

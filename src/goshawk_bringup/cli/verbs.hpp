@@ -11,7 +11,9 @@ int fly_command(const Arguments& arguments);
 int check_command(const Arguments& arguments);
 int run_command(const Arguments& arguments);
 int launch_command(const Arguments& arguments);
+int campaign_command(const Arguments& arguments);
 int view_command(const Arguments& arguments);
+int conform_command(const Arguments& arguments);
 int bench_command(const Arguments& arguments);
 int bench_plan_command(const Arguments& arguments);
 

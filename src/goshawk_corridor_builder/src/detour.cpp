@@ -54,6 +54,10 @@ int Detour::worst_in(const Segment& s) const {
   return worst;
 }
 
+bool Detour::is_free(const Segment& s) const {
+  return std::ranges::none_of(near_, [&](const Obstacle& o) { return meets(o, s, s.needed); });
+}
+
 bool Detour::push_away(const BoxSet& obstacles, const Bounds& map, const Segment& segment,
                        std::vector<Vec3>& between) {
   between.clear();

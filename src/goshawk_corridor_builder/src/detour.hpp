@@ -37,7 +37,7 @@ class Detour {
   bool push(const Bounds& map, const Segment& segment, int depth, std::vector<Vec3>& between);
   void gather(const BoxSet& obstacles, const Vec3& lower, const Vec3& upper);
   int worst_in(const Segment& segment) const;
-  bool is_free(const Segment& segment) const { return worst_in(segment) < 0; }
+  bool is_free(const Segment& segment) const;
 
   std::vector<Obstacle> near_;
 };

@@ -74,7 +74,7 @@ class Commands(SystemTest):
         """A page's domain is an example. Tools look at the live stages; what starts stages does
         so in a domain of its own."""
         environment = {k: v for k, v in exports.items() if k != "ROS_DOMAIN_ID"}
-        if re.search(r"goshawk (launch|run|fly|bench|replay)", name):
+        if re.search(r"goshawk (launch|run|fly|bench|replay|conform)", name):
             domain = harness.Domain()
             self.addCleanup(domain.close)
             environment["ROS_DOMAIN_ID"] = str(domain.number)

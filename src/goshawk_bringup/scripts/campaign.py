@@ -1,0 +1,282 @@
+#!/usr/bin/python3
+"""Many random missions, several at once, each judged by the second opinion: goshawk campaign.
+
+A mission is a made world and a tour of random reachable goals in it, flown in a DDS domain of its
+own. Everything about mission k follows from --seed and k, so that any one can be flown again.
+"""
+
+import argparse
+import collections
+import concurrent.futures
+import csv
+import json
+import math
+import pathlib
+import random
+import signal
+import statistics
+import subprocess
+import sys
+import threading
+
+DONE, NOT_DONE, WRONG_CALL = 0, 1, 2
+MISSION_TIMEOUT_S = 600.0
+GRAVITY_M_S2, AIR_KG_M3 = 9.81, 1.2
+MASS_KG = 1.0                                      # the simulator's default
+ROTORS_M2 = 4 * math.pi * 0.0635 ** 2              # four propellers of five inches
+
+
+class Mission:
+    """What mission number k of a campaign is."""
+
+    def __init__(self, options, number):
+        self.number = number
+        draw = random.Random(f"{options.seed}/{number}")
+        self.kind = draw.choice(options.kinds)
+        self.density = draw.choice(options.densities)
+        self.wind_m_s = draw.choice(options.wind)
+        self.noise_m = draw.choice(options.noise)
+        self.heading_rad = draw.uniform(-math.pi, math.pi)
+        self.world_seed = draw.randrange(1, 1 << 31)
+
+    def conditions(self):
+        return {"mission": self.number, "kind": self.kind, "density": self.density,
+                "wind_m_s": self.wind_m_s, "noise_m": self.noise_m, "world_seed": self.world_seed}
+
+    def world_arguments(self, size):
+        return ["--kind", self.kind, "--density", self.density, "--seed", self.world_seed,
+                "--size", size]
+
+    def simulator_parameters(self):
+        """Half of the wind is steady, half comes in gusts."""
+        steady = 0.5 * self.wind_m_s
+        values = {"wind_x_m_s": steady * math.cos(self.heading_rad),
+                  "wind_y_m_s": steady * math.sin(self.heading_rad),
+                  "gust_deviation_m_s": 0.5 * self.wind_m_s / math.sqrt(3.0),
+                  "gust_seed": self.number, "position_noise_m": self.noise_m,
+                  "velocity_noise_m_s": self.noise_m, "sensor_seed": self.number}
+        return [word for name, value in values.items()
+                for word in ("-p", f"simulator:{name}:={value}")]
+
+
+class Flyer:
+    """Runs goshawk; stops what runs when the campaign is interrupted."""
+
+    def __init__(self, options):
+        self.options = options
+        self.goshawk = str(pathlib.Path(options.prefix) / "bin/goshawk")
+        self.lock, self.running, self.stopping = threading.Lock(), set(), False
+
+    def call(self, *words):
+        """(status, the one JSON object that was printed), or a failure in the same form."""
+        with self.lock:
+            if self.stopping:
+                return NOT_DONE, {"ok": False, "code": "cancelled", "message": "interrupted"}
+            process = subprocess.Popen([self.goshawk, *map(str, words), "--json"],
+                                       stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+            self.running.add(process)
+        try:
+            out, err = process.communicate(timeout=MISSION_TIMEOUT_S)
+            return process.returncode, json.loads(out)
+        except subprocess.TimeoutExpired:
+            process.send_signal(signal.SIGINT)
+            process.communicate()
+            return NOT_DONE, {"ok": False, "code": "stage_silent", "message":
+                              f"no result within {MISSION_TIMEOUT_S:g} s"}
+        except json.JSONDecodeError:
+            return NOT_DONE, {"ok": False, "code": "io_failed", "message": f"no JSON: {err[-300:]}"}
+        finally:
+            with self.lock:
+                self.running.discard(process)
+
+    def stop(self):
+        with self.lock:
+            self.stopping = True
+            for process in self.running:
+                process.send_signal(signal.SIGINT)
+
+    def fly(self, mission):
+        folder = self.options.output / f"mission_{mission.number:05d}"
+        folder.mkdir(parents=True, exist_ok=True)
+        world = folder / "made.bt"
+        status, result = self.call("world", world, *mission.world_arguments(self.options.size))
+        if status == DONE:
+            status, result = self.call(
+                "fly", "--map", world, "--random", self.options.goals, "--seed",
+                mission.world_seed, "--launch", self.options.launch, "--output", folder,
+                "--no-record", *mission.simulator_parameters(),
+                *(word for p in self.options.parameters for word in ("-p", p)))
+        return {**mission.conditions(), **outcome(status, result, folder)}
+
+
+def outcome(status, result, folder):
+    legs = result.get("legs", [])
+    clearance = (result.get("clearance") or {}).get("smallest_m")
+    durations = [leg["trajectory"]["duration_s"] for leg in legs if leg.get("trajectory")]
+    return {"status": status, "code": result["code"], "message": result["message"],
+            "verdict": result.get("verdict", "not flown"), "legs": len(legs),
+            "arrived": sum(leg["arrived"] for leg in legs),
+            "leg_codes": [leg["code"] for leg in legs if not leg["arrived"]],
+            "clearance_m": clearance, "flight_s": sum(durations),
+            "max_error_m": (result.get("tracking") or {}).get("max_error_m"),
+            "energy_j": energy_j(folder / "flown.csv")}
+
+
+def energy_j(path):
+    """Work of the rotors on the air, by momentum theory: thrust^1.5 / sqrt(2 rho area)."""
+    try:
+        with open(path, encoding="utf-8") as file:
+            rows = [[float(r[k]) for k in ("t_s", "vx_m_s", "vy_m_s", "vz_m_s")]
+                    for r in csv.DictReader(file)]
+    except (OSError, KeyError, ValueError):
+        return None
+    sum_j = 0.0
+    for before, after in zip(rows[::10], rows[10::10]):
+        dt = after[0] - before[0]
+        if dt <= 0.0:
+            continue
+        a = [(after[i] - before[i]) / dt for i in (1, 2, 3)]
+        thrust = MASS_KG * math.hypot(a[0], a[1], a[2] + GRAVITY_M_S2)
+        sum_j += dt * thrust ** 1.5 / math.sqrt(2.0 * AIR_KG_M3 * ROTORS_M2)
+    return sum_j
+
+
+def quantile(values, q):
+    ordered = sorted(values)
+    return ordered[min(len(ordered) - 1, int(q * len(ordered)))] if ordered else None
+
+
+def summary(rows):
+    """One object: how many goals of how many were reached, and what became of the others."""
+    legs = sum(r["legs"] for r in rows)
+    codes = collections.Counter(code for r in rows for code in r["leg_codes"])
+    codes.update(r["code"] for r in rows if r["legs"] == 0)
+    clearances = [r["clearance_m"] for r in rows if r["clearance_m"] is not None]
+    errors = [r["max_error_m"] for r in rows if r["max_error_m"] is not None]
+    energies = [r["energy_j"] for r in rows if r["energy_j"] is not None]
+    return {"missions": len(rows), "flights": legs, "arrived": sum(r["arrived"] for r in rows),
+            "collisions": sum(r["verdict"] == "touched" for r in rows),
+            "not_judged": sum(r["legs"] > 0 and r["verdict"] == "not judged" for r in rows),
+            "failures_by_code": dict(codes),
+            "smallest_clearance_m": min(clearances, default=None),
+            "median_clearance_m": quantile(clearances, 0.5),
+            "largest_error_m": max(errors, default=None),
+            "flight_time_s": round(sum(r["flight_s"] for r in rows), 3),
+            "median_energy_j": statistics.median(energies) if energies else None}
+
+
+def text(value):
+    return "-" if value is None else f"{value:.4g}" if isinstance(value, float) else str(value)
+
+
+def print_table(rows):
+    keys = ["missions", "flights", "arrived", "collisions", "smallest_clearance_m",
+            "largest_error_m", "flight_time_s", "median_energy_j", "failures_by_code"]
+    print("| group | " + " | ".join(keys) + " |")
+    print("|" + " --- |" * (len(keys) + 1))
+    for name in ("kind", "density", "wind_m_s", "noise_m"):
+        for value in sorted({r[name] for r in rows}):
+            group = summary([r for r in rows if r[name] == value])
+            print(f"| {name} {value} | " + " | ".join(text(group[k]) for k in keys) + " |")
+    print("| all | " + " | ".join(text(summary(rows)[k]) for k in keys) + " |")
+    for r in rows:
+        if r["verdict"] == "touched" or (r["legs"] == 0 and r["code"] != "ok"):
+            print(f"mission {r['mission']}: {r['verdict']}, {r['code']}: {r['message']}")
+
+
+def run(options):
+    """Flies what is not flown yet. @return all rows"""
+    log = options.output / "missions.jsonl"
+    rows = []
+    if log.exists():
+        rows = [json.loads(line) for line in log.read_text().splitlines() if line.endswith("}")]
+    flown = {r["mission"] for r in rows}
+    missions = [Mission(options, k) for k in range(1, options.missions + 1) if k not in flown]
+    flyer = Flyer(options)
+    signal.signal(signal.SIGINT, lambda *_: flyer.stop())
+    signal.signal(signal.SIGTERM, lambda *_: flyer.stop())
+    with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool, log.open("a") as file:
+        for number, future in enumerate(concurrent.futures.as_completed(
+                [pool.submit(flyer.fly, m) for m in missions]), 1):
+            row = future.result()
+            if row["code"] == "cancelled" or flyer.stopping:
+                continue  # not flown: the next campaign into this folder does
+            rows.append(row)
+            file.write(json.dumps(row) + "\n")
+            file.flush()
+            print(f"{number}/{len(missions)} mission {row['mission']} {row['kind']} "
+                  f"{row['density']}: {row['arrived']} of {row['legs']} goals, {row['verdict']}",
+                  file=sys.stderr, flush=True)
+    return sorted(rows, key=lambda r: r["mission"]), flyer.stopping
+
+
+def numbers(least, most):
+    def parse(value):
+        parsed = [float(word) for word in value.split(",")]
+        if not all(least <= number <= most for number in parsed):
+            raise argparse.ArgumentTypeError(f"'{value}': numbers from {least:g} to {most:g} and "
+                                             "commas are meant")
+        return parsed
+    return parse
+
+
+def kinds(value):
+    known = {"boxes", "forest", "office", "noise"}
+    words = value.split(",")
+    if not known.issuperset(words):
+        raise argparse.ArgumentTypeError(f"'{value}': of {', '.join(sorted(known))}, with commas")
+    return words
+
+
+def count(value):
+    number = int(value)
+    if number < 1:
+        raise argparse.ArgumentTypeError(f"'{value}': 1 or more is meant")
+    return number
+
+
+def parse_options():
+    parser = argparse.ArgumentParser(
+        prog="goshawk campaign", description="Fly many random missions, several at once, each "
+        "judged by the second opinion. Flown again into the same folder, it goes on.")
+    add = parser.add_argument
+    add("--missions", type=count, default=20, help="worlds (default 20)")
+    add("--goals", type=count, default=5, help="flights in each world (default 5)")
+    add("--seed", type=int, default=1, help="of everything random (default 1)")
+    add("--kinds", type=kinds, default=["boxes", "forest", "office"], help="boxes,forest,...")
+    add("--densities", type=numbers(0, 0.95), default=[0.1, 0.2, 0.3], help="0.1,0.2,...")
+    add("--wind", type=numbers(0, 15), default=[0.0, 1.5, 3.0], help="[m/s] 0,1.5,...")
+    add("--noise", type=numbers(0, 1), default=[0.0], help="[m] of the odometry: 0,0.005,...")
+    add("--size", default="10,10,4", help="[m] x,y,z of the worlds (default 10,10,4)")
+    add("--jobs", type=count, default=2, help="missions at once (default 2)")
+    add("--launch", default="flight_lock_step", help="launch file (default flight_lock_step, "
+        "where missions repeat bit for bit; flight for a process each)")
+    add("-p", dest="parameters", action="append", metavar="NODE:NAME:=VALUE", help="parameter of a "
+        "stage; may repeat (default in lock step: simulator:speed:=0, as fast as it goes)")
+    add("--output", type=pathlib.Path, default=pathlib.Path("campaign"), help="folder")
+    add("--json", action="store_true", help="print one JSON object")
+    add("--prefix", required=True, help=argparse.SUPPRESS)
+    options = parser.parse_args()
+    if options.parameters is None:
+        in_lock_step = options.launch == "flight_lock_step"
+        options.parameters = ["simulator:speed:=0"] if in_lock_step else []
+    return options
+
+
+def main():
+    options = parse_options()
+    try:
+        options.output.mkdir(parents=True, exist_ok=True)
+        rows, interrupted = run(options)
+    except OSError as error:
+        print(f"goshawk campaign: io_failed: {error.filename}: {error.strerror}", file=sys.stderr)
+        return NOT_DONE
+    if options.json:
+        print(json.dumps({"ok": not interrupted, **summary(rows), "folder": str(options.output)}))
+    else:
+        print_table(rows)
+    return NOT_DONE if interrupted or any(r["verdict"] == "touched" for r in rows) else DONE
+
+
+if __name__ == "__main__":
+    sys.exit(main())

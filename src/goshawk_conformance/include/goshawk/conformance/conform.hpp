@@ -1,0 +1,51 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "goshawk/core/result.hpp"
+
+namespace goshawk::runtime {
+class Context;
+}  // namespace goshawk::runtime
+
+namespace goshawk::conformance {
+
+/// One thing that every implementation of a stage owes to the others.
+struct Item {
+  std::string name;    // "echoes the request whole"
+  bool passed = false;
+  std::string detail;  // what was seen, or what is wrong and in which answer
+};
+
+struct Report {
+  std::string stage;
+  std::string implementation;  // as the stage calls itself
+  std::vector<Item> items;
+  double latency_p50_s = 0.0;  // of answered good requests, from sent to arrived
+  double latency_p99_s = 0.0;
+  double latency_max_s = 0.0;
+
+  bool passed() const;
+};
+
+struct Options {
+  std::string stage;          // path_search, corridor_builder, trajectory_optimizer
+  std::string node_namespace = "/";
+  int requests = 40;          // good ones
+  std::uint64_t seed = 1;     // of the world and the requests
+  double timeout_s = 2.0;     // longest wait for an answer
+  double ready_timeout_s = 20.0;
+  bool fresh = true;          // the stage has seen no map yet
+};
+
+/// Stages that can be examined.
+std::vector<std::string> stages();
+
+/// Stands in for all neighbours of the stage: sends a map and requests, good and bad, and examines
+/// every answer. Requests are the same for the same seed.
+/// @return invalid_parameter for a stage that is not known, stage_silent where nobody reads its
+/// input within ready_timeout_s
+Result<Report> conform(runtime::Context& context, const Options& options);
+
+}  // namespace goshawk::conformance

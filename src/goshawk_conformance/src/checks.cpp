@@ -1,0 +1,216 @@
+#include "checks.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+namespace goshawk::conformance {
+namespace {
+
+constexpr double kTolerance = 1e-6;  // [m], [m/s], [m/s^2]
+using Point = geometry_msgs::msg::Point;
+
+Vec3 vec(const Point& p) {
+  return {p.x(), p.y(), p.z()};
+}
+Vec3 vec(const geometry_msgs::msg::Vector3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+std::string at(const char* what, std::size_t k, const char* fault, double by) {
+  char text[160];
+  std::snprintf(text, sizeof text, "%s %zu %s (%.3g)", what, k, fault, by);
+  return text;
+}
+
+/// The point is in the open inside of an occupied voxel, or outside of the map.
+bool is_blocked(const VoxelGrid& grid, const Vec3& p) {
+  const Vec3 g = grid.geometry.to_grid(p);
+  const double slack = kTolerance / grid.geometry.resolution_m;
+  for (const double side : {-slack, slack}) {  // on a face it belongs to both voxels
+    const Vec3 q = g.array() + side;
+    if (!grid.occupied.test({int(std::floor(q.x())), int(std::floor(q.y())),
+                             int(std::floor(q.z()))})) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// @return whether the line meets an obstacle, in steps of a twentieth of a voxel
+bool is_blocked(const VoxelGrid& grid, const Vec3& a, const Vec3& b) {
+  const int steps = 1 + int(std::ceil((b - a).norm() / (0.05 * grid.geometry.resolution_m)));
+  for (int k = 0; k <= steps; ++k) {
+    if (is_blocked(grid, a + (b - a) * (double(k) / steps))) return true;
+  }
+  return false;
+}
+
+template <typename Message>
+std::string fault_of_head(const Message& m, const VoxelGrid& grid) {
+  if (m.header().frame_id() != "map") return "its frame is '" + m.header().frame_id() + "'";
+  if (m.header().stamp().sec() == 0) return "it has no stamp";
+  if (m.implementation().empty()) return "it does not say who made it";
+  if (m.map_version() != grid.version) {
+    return "it names map version " + std::to_string(m.map_version()) + ", which is " +
+           std::to_string(grid.version);
+  }
+  return "";
+}
+
+/// @return [m] how far outside; negative inside; infinity where it is no polytope
+double outside(const msg::Polytope& polytope, const Vec3& p) {
+  const auto& n = polytope.normals();
+  const auto& b = polytope.offsets();
+  if (b.empty() || n.size() != 3 * b.size()) return std::numeric_limits<double>::infinity();
+  double worst = -std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < b.size(); ++i) {
+    const Vec3 normal(n[3 * i], n[3 * i + 1], n[3 * i + 2]);
+    const double distance = normal.dot(p) - b[i];
+    if (!std::isfinite(distance) || std::abs(normal.norm() - 1.0) > 1e-6) {
+      return std::numeric_limits<double>::infinity();
+    }
+    worst = std::max(worst, distance);
+  }
+  return worst;
+}
+
+// No corner and no centre of an occupied voxel may be inside.
+std::string fault_of_space(const msg::Polytope& polytope, std::size_t k, const VoxelGrid& grid) {
+  const Index3 size = grid.geometry.size;
+  for (int z = 0; z < size.z; ++z) {
+    for (int y = 0; y < size.y; ++y) {
+      for (int x = 0; x < size.x; ++x) {
+        if (!grid.occupied.get({x, y, z})) continue;
+        double deepest = outside(polytope, grid.geometry.center({x, y, z}));
+        // Farther than a voxel's diagonal: none of its corners can be in.
+        if (deepest > 1.8 * grid.geometry.resolution_m) continue;
+        for (int c = 0; c < 8; ++c) {
+          const Index3 corner{x + (c & 1), y + (c >> 1 & 1), z + (c >> 2)};
+          deepest = std::min(deepest, outside(polytope, grid.geometry.lower_corner(corner)));
+        }
+        if (deepest < -kTolerance) return at("polytope", k, "holds an obstacle [m]", -deepest);
+      }
+    }
+  }
+  return "";
+}
+
+// The k-th derivative's control point j of a quintic, from its control points.
+Vec3 derivative(const msg::BezierPiece& piece, int order, std::size_t j) {
+  const auto& c = piece.control_points();
+  if (order == 0) return vec(c[j]);
+  const double duration_s = piece.duration();
+  if (order == 1) return 5.0 / duration_s * (vec(c[j + 1]) - vec(c[j]));
+  return 20.0 / (duration_s * duration_s) * (vec(c[j + 2]) - 2.0 * vec(c[j + 1]) + vec(c[j]));
+}
+
+double size_of(const Vec3& v, int norm) {
+  return norm == 0 ? v.norm() : v.cwiseAbs().maxCoeff();
+}
+
+std::string fault_of_piece(const msg::BezierPiece& piece, std::size_t k,
+                           const std::vector<msg::Polytope>& polytopes, const msg::Limits& limits) {
+  if (!(piece.duration() > 0.0)) return at("piece", k, "lasts [s]", piece.duration());
+  if (piece.polytope() >= polytopes.size()) {
+    return at("piece", k, "names a polytope that is not there", double(piece.polytope()));
+  }
+  double position = -1.0, velocity = -1.0, acceleration = -1.0;
+  for (std::size_t j = 0; j < 6; ++j) {
+    const double out = outside(polytopes[piece.polytope()], derivative(piece, 0, j));
+    position = std::max(position, out);
+    if (j < 5) velocity = std::max(velocity, size_of(derivative(piece, 1, j), limits.norm()));
+    if (j < 4) {
+      acceleration = std::max(acceleration, size_of(derivative(piece, 2, j), limits.norm()));
+    }
+  }
+  if (!(position <= kTolerance)) return at("piece", k, "leaves its polytope [m]", position);
+  if (!(velocity <= limits.v_max() + kTolerance)) return at("piece", k, "is too fast", velocity);
+  if (!(acceleration <= limits.a_max() + kTolerance)) {
+    return at("piece", k, "accelerates too much", acceleration);
+  }
+  return "";
+}
+
+double state_error(const msg::FlatState& state, const msg::BezierPiece& piece, bool end) {
+  const double p = (derivative(piece, 0, end ? 5 : 0) - vec(state.position())).norm();
+  const double v = (derivative(piece, 1, end ? 4 : 0) - vec(state.velocity())).norm();
+  const double a = (derivative(piece, 2, end ? 3 : 0) - vec(state.acceleration())).norm();
+  return std::max({p, v, a});
+}
+
+}  // namespace
+
+std::string fault_of(const msg::Path& path, const msg::PlanRequest& sent, const VoxelGrid& grid) {
+  if (auto fault = fault_of_head(path, grid); !fault.empty()) return fault;
+  const auto& w = path.waypoints();
+  if (w.size() < 2) return "it has " + std::to_string(w.size()) + " waypoints";
+  if ((vec(w.front()) - vec(sent.start().position())).norm() > kTolerance) {
+    return "it does not begin at the start";
+  }
+  if ((vec(w.back()) - vec(sent.goal().position())).norm() > kTolerance) {
+    return "it does not end at the goal";
+  }
+  for (std::size_t k = 0; k + 1 < w.size(); ++k) {
+    if (!vec(w[k]).allFinite()) return at("waypoint", k, "is not finite", w[k].x());
+    const double length_m = (vec(w[k + 1]) - vec(w[k])).norm();
+    if (length_m > 1000.0) return at("segment", k, "leaves the map [m]", length_m);
+    if (is_blocked(grid, vec(w[k]), vec(w[k + 1]))) {
+      return at("segment", k, "meets an obstacle [m long]", length_m);
+    }
+  }
+  return "";
+}
+
+std::string fault_of(const msg::Corridor& corridor, const msg::Path& sent, const VoxelGrid& grid) {
+  if (auto fault = fault_of_head(corridor, grid); !fault.empty()) return fault;
+  const auto& w = corridor.waypoints();
+  const auto& polytopes = corridor.polytopes();
+  if (polytopes.empty() || w.size() != polytopes.size() + 1) {
+    return std::to_string(polytopes.size()) + " polytopes need one waypoint more, but there are " +
+           std::to_string(w.size());
+  }
+  if ((vec(w.front()) - vec(sent.waypoints().front())).norm() > kTolerance ||
+      (vec(w.back()) - vec(sent.waypoints().back())).norm() > kTolerance) {
+    return "it does not join the ends of the path";
+  }
+  for (std::size_t k = 0; k < polytopes.size(); ++k) {
+    const double out = std::max(outside(polytopes[k], vec(w[k])), outside(polytopes[k], vec(w[k + 1])));
+    if (!(out <= kTolerance)) return at("polytope", k, "does not hold its waypoints [m]", out);
+    if (auto fault = fault_of_space(polytopes[k], k, grid); !fault.empty()) return fault;
+  }
+  if (polytopes.size() > 1 && !(corridor.min_overlap_radius() > 0.0)) {
+    return "neighbours share no ball, by its own figure";
+  }
+  return "";
+}
+
+std::string fault_of(const msg::BezierTrajectory& t, const msg::Corridor& sent,
+                     const VoxelGrid& grid) {
+  if (auto fault = fault_of_head(t, grid); !fault.empty()) return fault;
+  if (t.pieces().empty()) return "it has no pieces";
+  if (!(t.polytopes() == sent.polytopes())) return "its polytopes are not the corridor's";
+  const auto& limits = sent.request().limits();
+  for (std::size_t k = 0; k < t.pieces().size(); ++k) {
+    const auto& piece = t.pieces()[k];
+    if (auto fault = fault_of_piece(piece, k, t.polytopes(), limits); !fault.empty()) return fault;
+    if (k == 0) continue;
+    for (int order = 0; order < 3; ++order) {
+      const double jump = (derivative(t.pieces()[k - 1], order, std::size_t(5 - order)) -
+                           derivative(piece, order, 0))
+                              .norm();
+      if (!(jump <= kTolerance)) return at("piece", k, "jumps from the one before", jump);
+    }
+  }
+  const double start = state_error(sent.request().start(), t.pieces().front(), false);
+  if (!(start <= kTolerance)) return at("piece", 0, "does not begin in the start state", start);
+  const double goal = state_error(sent.request().goal(), t.pieces().back(), true);
+  if (!(goal <= kTolerance)) return at("the end", 0, "is not the goal state", goal);
+  const auto& c = t.certificate();
+  if (!(std::max({c.position(), c.velocity(), c.acceleration()}) <= kTolerance)) {
+    return "its own certificate does not hold";
+  }
+  return "";
+}
+
+}  // namespace goshawk::conformance
