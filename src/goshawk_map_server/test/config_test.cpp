@@ -35,7 +35,7 @@ TEST(Config, DefaultsAreValidAndEveryParameterIsDescribed) {
   Checker checker;
   describe(config, checker);
   EXPECT_TRUE(checker.all_valid);
-  EXPECT_EQ(checker.names.size(), 15U);
+  EXPECT_EQ(checker.names.size(), 16U);
 }
 
 TEST(Config, EveryAllowedWordIsUnderstood) {

@@ -74,7 +74,11 @@ class PathSearchComponent : public Component {
   void publish(const msg::PlanRequest& request, const PlannedPath& path, std::int64_t compute_ns) {
     msg::Path m;
     m.request(request);
-    // The stages behind this one end where the path ends: at the goal reached, or moved to.
+    // The stages behind this one begin and end where the path does: at the start as it was moved
+    // (which a vehicle that is elsewhere will not fly), and at the goal that was reached.
+    if (path.start_moved_m > 0.0) {
+      m.request().start().position(conversions::to_point(path.waypoints_map.front()));
+    }
     m.request().goal().position(conversions::to_point(path.waypoints_map.back()));
     m.implementation(path.implementation);
     m.map_version(map_.grid()->version);

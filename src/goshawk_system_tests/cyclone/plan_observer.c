@@ -126,7 +126,7 @@ int main(int argc, char** argv) {
   const double violation = largest_violation(trajectory);
   printf("{\"request\": %llu, \"waypoints\": %u, \"polytopes\": %u, \"pieces\": %u, "
          "\"largest_violation\": %.3g}\n",
-         (unsigned long long)trajectory->request.id, path->waypoints._length,
+         (unsigned long long)trajectory->request.id, corridor->waypoints._length,
          corridor->polytopes._length, trajectory->pieces._length, violation);
   const bool same = path->request.id == corridor->request.id &&
                     corridor->request.id == trajectory->request.id &&

@@ -5,7 +5,8 @@ import harness
 import second_opinion
 from calls_case import DONE, NOT_DONE, WRONG_CALL, CallsCase, ascii_pcd
 
-PLAN_KEYS = {"ok", "code", "message", "stages", "path", "corridor", "trajectory", "certificate"}
+PLAN_KEYS = {"ok", "code", "message", "request", "stages", "path", "corridor", "trajectory",
+             "certificate"}
 
 
 class GoodPlan(CallsCase):
@@ -20,14 +21,17 @@ class GoodPlan(CallsCase):
         self.assertEqual([set(s) for s in plan["stages"]],
                          3 * [{"name", "implementation", "compute_us"}])
         self.assertEqual(set(plan["path"]), {"raw_length_m", "pruned_length_m", "waypoints_raw",
-                                             "waypoints", "expanded", "points"})
+                                             "waypoints", "expanded", "points", "cost", "goal",
+                                             "start_moved_m", "goal_moved_m", "cut_off", "note"})
         self.assertEqual(set(plan["corridor"]), {"polytopes", "min_overlap_radius_m"})
         self.assertEqual(set(plan["trajectory"]),
                          {"duration_s", "length_m", "mean_speed_m_s", "max_speed_m_s",
                           "max_acceleration_m_s2", "pieces"})
         self.assertEqual(set(plan["certificate"]),
                          {"position_m", "velocity_m_s", "acceleration_m_s2", "joint_position_m",
-                          "joint_velocity_m_s", "joint_acceleration_m_s2", "start_m", "goal_m"})
+                          "joint_velocity_m_s", "joint_acceleration_m_s2", "start_m", "goal_m",
+                          "jerk_m_s3", "start_excess_m_s", "start_excess_m_s2",
+                          "start_excess_s"})
         for family, value in plan["certificate"].items():
             self.assertLessEqual(value, 1e-6, family)
 

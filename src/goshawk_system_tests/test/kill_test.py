@@ -141,7 +141,8 @@ class LaunchEnds(SystemTest):
         world = self.sandbox.folder / "world.bt"
         self.assertEqual(self.sandbox.goshawk("world", world).status, 0)
         launch = harness.Launch(self.sandbox, "flight", "-p", f"map_server:map_file:={world}")
-        self.assertTrue(until(lambda: len(launch.events("running")) == 7, 20.0), launch.tails())
+        self.assertTrue(until(lambda: len(launch.events("running")) == len(harness.STAGES),
+                              20.0), launch.tails())
         return launch
 
     def check_stop(self, number):

@@ -39,9 +39,6 @@ class TrajectoryOptimizerComponent : public Component {
     auto [solution, compute_ns] = timed([&]() -> Result<Solution> {
       const auto corridor = conversions::from_msg(m);
       if (!corridor) return corridor.error();
-      // The search may have moved the ends: the corridor knows where they are.
-      request->start.position = corridor->waypoints_map.front();
-      request->goal.position = corridor->waypoints_map.back();
       const Query query{.duration_s = request->duration_s, .out_of_time = [&] {
                           return !conversions::check_deadline(*request, node_.now_ns());
                         }};
@@ -63,8 +60,6 @@ class TrajectoryOptimizerComponent : public Component {
                const Solution& solution, std::int64_t compute_ns) {
     msg::BezierTrajectory m;
     m.request(corridor.request());
-    m.request().start().position(conversions::to_msg(request.start).position());
-    m.request().goal().position(conversions::to_msg(request.goal).position());
     m.implementation(std::string(optimizer_.implementation()));
     m.map_version(corridor.map_version());
     m.pieces(conversions::to_msg(solution.trajectory));
