@@ -85,6 +85,7 @@ Result<Judged> judge(const Options& o, const Body& body) {
   if (!check) return check.error();
   const auto track = flight_check::read_flown_csv(folder ? flight / "flown.csv" : flight);
   if (!track) return track.error();
+  if (auto gaps = flight_check::check_gaps(*track); !gaps) return gaps.error();
   auto flown = check->judge(*track);
   if (!flown) return flown.error();
   Judged judged{*std::move(flown), {}};

@@ -8,6 +8,12 @@
 namespace goshawk::cli {
 namespace {
 
+// Samples that may wait to be read: in lock step they come much faster than real time.
+constexpr int kWholeTrack = 10'000;
+
+}  // namespace
+namespace {
+
 using namespace goshawk::runtime;
 namespace msg = goshawk_msgs::msg;
 
@@ -40,12 +46,13 @@ FlightRecorder::FlightRecorder(Node& node)
       "committed_trajectory", Qos::latched(),
       [this](const msg::CommittedTrajectory& m, const MessageInfo&) { on_commit(m); });
   node.subscribe<nav_msgs::msg::Odometry>(
-      "odom", Qos::best_effort(100), [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) {
+      "odom", Qos::best_effort(kWholeTrack),
+      [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) {
         if (!knows_truth_) on_odometry(m);
       });
   // A simulator with noisy sensors tells the truth beside them: that is what was flown.
   node.subscribe<nav_msgs::msg::Odometry>(
-      "odom_true", Qos::best_effort(100),
+      "odom_true", Qos::best_effort(kWholeTrack),
       [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) {
         if (!std::exchange(knows_truth_, true)) flown_.clear();
         on_odometry(m);

@@ -293,6 +293,8 @@ class Flight {
     auto check = flight_check::FlightCheck::open(
         p_.folder + "/world.bt", flight_check::Body{.radius_m = p_.config.map.radius_m});
     if (!check) return check.error();
+    // The line across a gap may cut through what was flown around.
+    if (auto gaps = flight_check::check_gaps(track); !gaps) return gaps.error();
     return check->judge(track);
   }
 

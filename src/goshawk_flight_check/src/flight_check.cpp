@@ -10,6 +10,24 @@
 
 namespace goshawk::flight_check {
 
+Status check_gaps(std::span<const Sample> track) {
+  double longest_s = 0.0;
+  double at_s = 0.0;
+  for (std::size_t i = 1; i < track.size(); ++i) {
+    const double gap_s = track[i].t_s - track[i - 1].t_s;
+    if (gap_s > longest_s) {
+      longest_s = gap_s;
+      at_s = track[i - 1].t_s;
+    }
+  }
+  if (longest_s <= kLongestGap_s) return success();
+  return fail(ErrorCode::tracking_lost,
+              "the track has a gap of " + std::to_string(longest_s) + " s at " +
+                  std::to_string(at_s) +
+                  " s, so it cannot be judged: what was flown there is not known; record it on a "
+                  "machine that keeps up");
+}
+
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();

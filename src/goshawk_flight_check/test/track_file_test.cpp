@@ -88,5 +88,19 @@ TEST(Payload, OfAMessageGivesTheSameVerdictAsTheTreeAndBadBytesNone) {
   EXPECT_EQ(FlightCheck::from_payload(payload, NAN).code(), ErrorCode::map_malformed);
 }
 
+TEST(Gaps, AreNamedWhereTheyAreTooLongToJudge) {
+  std::vector<Sample> track;
+  for (int i = 0; i < 100; ++i) track.push_back({.t_s = 0.01 * i});
+  EXPECT_TRUE(check_gaps(track));
+  EXPECT_TRUE(check_gaps({}));
+  track.push_back({.t_s = 0.99 + kLongestGap_s});
+  EXPECT_TRUE(check_gaps(track));
+  track.push_back({.t_s = 5.0});
+  const auto status = check_gaps(track);
+  ASSERT_FALSE(status);
+  EXPECT_EQ(status.code(), ErrorCode::tracking_lost);
+  EXPECT_THAT(status.error().message, testing::HasSubstr("gap of 3.51"));
+}
+
 }  // namespace
 }  // namespace goshawk::flight_check

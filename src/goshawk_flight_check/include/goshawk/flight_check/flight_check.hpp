@@ -28,6 +28,12 @@ struct Sample {
   Eigen::Quaterniond q_map_base = Eigen::Quaterniond::Identity();  // base_link to map
 };
 
+/// What lies in a long gap between samples of a flown track is not known, so it cannot be judged.
+inline constexpr double kLongestGap_s = 0.5;
+
+/// @return tracking_lost with the longest gap where it is above kLongestGap_s
+Status check_gaps(std::span<const Sample> track);
+
 struct Verdict {
   bool touched = false;
   /// [m] smallest distance between body and obstacles, at most Options::tolerance_m above the
