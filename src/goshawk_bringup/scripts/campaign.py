@@ -21,6 +21,7 @@ import threading
 
 DONE, NOT_DONE, WRONG_CALL = 0, 1, 2
 MISSION_TIMEOUT_S = 600.0
+TRIES = 3
 GRAVITY_M_S2, AIR_KG_M3 = 9.81, 1.2
 MASS_KG = 1.0                                      # the simulator's default
 ROTORS_M2 = 4 * math.pi * 0.0635 ** 2              # four propellers of five inches
@@ -96,6 +97,14 @@ class Flyer:
                 process.send_signal(signal.SIGINT)
 
     def fly(self, mission):
+        """A flight whose track has gaps is not judged: the machine was too busy, so once more."""
+        for _ in range(TRIES):
+            row = self.fly_once(mission)
+            if row["verdict"] != "not judged" or self.stopping:
+                break
+        return row
+
+    def fly_once(self, mission):
         folder = self.options.output / f"mission_{mission.number:05d}"
         folder.mkdir(parents=True, exist_ok=True)
         world = folder / "made.bt"
