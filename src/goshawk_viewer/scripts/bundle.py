@@ -7,8 +7,8 @@
 import pathlib
 import sys
 
-SCRIPTS = ["geometry.js", "scene.js", "plots.js", "panel.js", "flight.js", "cdr.js", "foxglove.js",
-           "live.js", "start.js"]
+SCRIPTS = ["geometry.js", "theme.js", "map_meshes.js", "vehicle.js", "sight.js", "scene.js", "plots.js",
+           "panel.js", "flight.js", "cdr.js", "foxglove.js", "live.js", "start.js"]
 THREE = ["three.min.js", "examples/js/controls/OrbitControls.js",
          "examples/js/lines/LineSegmentsGeometry.js", "examples/js/lines/LineGeometry.js",
          "examples/js/lines/LineMaterial.js", "examples/js/lines/LineSegments2.js",
