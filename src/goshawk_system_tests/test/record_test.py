@@ -185,7 +185,7 @@ class ReplayedStages(RecordingCase):
         file = self.sandbox.folder / f"{name}.yaml"
         file.write_text(json.dumps({"stages": [{"component": s} for s in stages]}))
         reports = self.sandbox.start(GOSHAWK, "topic", "echo", "stage_report", "--json",
-                                     "--timeout", "20")
+                                     "--timeout", "60")
         launch = Launch(self.sandbox, file, *ros_args)
         self.assertTrue(until(lambda: {r["stage"] for r in reports.lines()} >= set(stages), 30),
                         launch.tails())

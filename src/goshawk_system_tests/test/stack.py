@@ -61,7 +61,8 @@ class Stack:
         self.odom = self.echo("odom", "--no-arr")
 
     def echo(self, topic, *options):
-        return self.sandbox.start(GOSHAWK, "topic", "echo", topic, "--json", *options)
+        return self.sandbox.start(GOSHAWK, "topic", "echo", topic, "--json", "--timeout", "60",
+                                  *options)
 
     def wait_ready(self, timeout_s=30.0):
         def missing():
