@@ -31,7 +31,7 @@ Goshawk.Voxels = class {
     return voxels;
   }
 
-  // Rows of 64-bit words as goshawk_msgs/VoxelGrid has them.
+  // Rows of 64-bit words as goshawk_msgs/VoxelGrid has them, as the bytes they are on the wire.
   static fromWords(origin, resolution, size, bytes) {
     const voxels = new Goshawk.Voxels(origin, resolution, size);
     const rowBytes = Math.ceil(size[0] / 64) * 8;
@@ -41,6 +41,12 @@ Goshawk.Voxels = class {
       }
     }
     return voxels;
+  }
+
+  // The same, of words as a BigUint64Array.
+  static fromBigWords(origin, resolution, size, words) {
+    const bytes = new Uint8Array(words.buffer, words.byteOffset, words.byteLength);
+    return Goshawk.Voxels.fromWords(origin, resolution, size, bytes);
   }
 
   upper(axis) { return this.origin[axis] + this.size[axis] * this.resolution; }
