@@ -49,6 +49,18 @@ Goshawk.Voxels = class {
     return Goshawk.Voxels.fromWords(origin, resolution, size, bytes);
   }
 
+  // The new content of 64 x 8 x 8 voxels, as goshawk_msgs/VoxelBrick has it: a word a row.
+  setBrick(brick) {
+    const first = [64 * brick.word_x, 8 * brick.brick_y, 8 * brick.brick_z];
+    const last = first.map((c, i) => Math.min(this.size[i], c + (i ? 8 : 64)));
+    for (let z = first[2]; z < last[2]; ++z) for (let y = first[1]; y < last[1]; ++y) {
+      const word = 8 * (8 * (z & 7) + (y & 7)), row = this.size[0] * (y + this.size[1] * z);
+      for (let x = first[0]; x < last[0]; ++x) {
+        this.cells[row + x] = (brick.occupied[word + ((x & 63) >> 3)] >> (x & 7)) & 1;
+      }
+    }
+  }
+
   upper(axis) { return this.origin[axis] + this.size[axis] * this.resolution; }
 
   // How many layers lie below a height.

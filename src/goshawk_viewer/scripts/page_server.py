@@ -47,6 +47,8 @@ class Site:
         """@return bytes, a file's path, or None. Nothing outside of the folders is ever found."""
         if path in self.parts:
             return self.parts[path]
+        if "\0" in path:
+            return None
         for name, folder in self.folders.items():
             if path.startswith(name):
                 file = (folder / path[len(name):]).resolve()
