@@ -2,7 +2,6 @@
 // maps disturb setpoints. The other end of each link is this program once more, as a process.
 
 #include <signal.h>
-#include <sys/prctl.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -171,7 +170,6 @@ void draw(Report& report) {
 }
 
 int run_echo(const LinkOptions& options) {
-  prctl(PR_SET_PDEATHSIG, SIGTERM);  // whoever started it is the only one who needs it
   for (const int number : {SIGINT, SIGTERM}) signal(number, [](int) { g_stopped = 1; });
   echo(options, nullptr, [] { return g_stopped != 0; });
   return 0;

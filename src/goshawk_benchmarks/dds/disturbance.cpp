@@ -1,7 +1,6 @@
 #include "dds/disturbance.hpp"
 
 #include <signal.h>
-#include <sys/prctl.h>
 
 #include <algorithm>
 #include <memory>
@@ -230,7 +229,6 @@ void measure_disturbance(Report& report, int domain) {
 }
 
 int run_roles(const std::string& roles) {
-  prctl(PR_SET_PDEATHSIG, SIGTERM);
   sigset_t signals;
   sigemptyset(&signals);
   sigaddset(&signals, SIGINT);
