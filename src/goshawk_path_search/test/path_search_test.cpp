@@ -11,14 +11,8 @@
 namespace goshawk::path_search {
 namespace {
 
+using reference::grid_of;
 using reference::Random;
-
-std::shared_ptr<VoxelGrid> grid_of(BitGrid blocked) {
-  auto grid = std::make_shared<VoxelGrid>();
-  grid->geometry = {Vec3(-1.0, 2.0, 0.5), 0.2, blocked.size()};
-  grid->occupied = std::move(blocked);
-  return grid;
-}
 
 PathSearch stage(const Config& config = {}) {
   return std::move(PathSearch::create(config)).value();

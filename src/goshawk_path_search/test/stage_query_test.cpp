@@ -13,15 +13,9 @@
 namespace goshawk::path_search {
 namespace {
 
+using reference::grid_of;
 using reference::Random;
 using testing::HasSubstr;
-
-std::shared_ptr<VoxelGrid> grid_of(BitGrid blocked) {
-  auto grid = std::make_shared<VoxelGrid>();
-  grid->geometry = {Vec3(-1.0, 2.0, 0.5), 0.2, blocked.size()};
-  grid->occupied = std::move(blocked);
-  return grid;
-}
 
 PathSearch stage(const Config& config, std::shared_ptr<const VoxelGrid> map) {
   PathSearch search = std::move(PathSearch::create(config)).value();

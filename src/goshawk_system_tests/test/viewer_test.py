@@ -9,7 +9,8 @@ import shutil
 import socket
 
 import harness
-from harness import GOSHAWK, SOURCE, StackTest, SystemTest, note, until
+from harness import GOSHAWK, SOURCE, SystemTest, note, until
+from stack import StackTest
 
 SCRIPTS = SOURCE / "src/goshawk_viewer/test"
 

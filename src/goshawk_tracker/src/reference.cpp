@@ -8,10 +8,6 @@ namespace {
 
 constexpr double kShortestBrake_s = 0.5;
 
-double seconds(std::int64_t from_ns, std::int64_t to_ns) {
-  return double(to_ns - from_ns) * 1e-9;
-}
-
 }  // namespace
 
 Reference Reference::hold(const Vec3& position_map) {

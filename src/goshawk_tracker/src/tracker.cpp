@@ -12,10 +12,6 @@ namespace {
 
 constexpr std::int64_t kTimeBound_ns = 4'000'000'000'000'000'000;  // differences do not overflow
 
-double seconds(std::int64_t from_ns, std::int64_t to_ns) {
-  return double(to_ns - from_ns) * 1e-9;
-}
-
 bool within_bound(std::int64_t time_ns) {
   return time_ns >= -kTimeBound_ns && time_ns <= kTimeBound_ns;
 }

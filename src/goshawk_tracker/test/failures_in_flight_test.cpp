@@ -8,8 +8,6 @@
 namespace goshawk::tracker {
 namespace {
 
-constexpr std::int64_t kSecond = 1'000'000'000;
-
 // Ten metres along y, with 2 m/s in the middle.
 CommittedTrajectory ten_metres() {
   auto committed = straight_line({0, 0, 1}, {0, 10, 1}, 9.375);
