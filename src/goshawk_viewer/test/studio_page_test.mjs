@@ -39,15 +39,15 @@ await page.goto(url, {waitUntil: 'commit'});
 check(await there('tracking error [m]'), 'our layout is loaded');
 check(await there('Send this goal'), 'with a panel that sends a goal');
 if (kind === 'recording') {
-  // A click into the time bar jumps there, to the flight's middle. Before the recording is open there
+  // A click into the time bar jumps there: to the flight's end. Before the recording is open there
   // is no bar; a second click too early would begin the jump once more.
-  const flying = page.getByText('"flying"').first();
+  const arrived = page.getByText('"arrived"').first();
   let found = false;
   for (let k = 0; k < 6 && !found; ++k) {
-    await page.mouse.click(700, 843);
-    found = await flying.waitFor({timeout: 20000}).then(() => true, () => false);
+    await page.mouse.click(1424, 843);
+    found = await arrived.waitFor({timeout: 20000}).then(() => true, () => false);
   }
-  check(found, 'a jump to the middle finds it flying');
+  check(found, 'a jump to the end finds that it arrived');
 } else {
   check(await there('request_id'), 'live messages come');
   await page.getByRole('button', {name: 'Send this goal'}).click();
