@@ -17,12 +17,13 @@ class Conform(SystemTest):
         return {item["name"]: item["detail"] for item in report["items"] if not item["passed"]}
 
     def test_every_stage_of_ours_passes(self):
-        for stage in ("path_search", "corridor_builder", "trajectory_optimizer"):
+        for stage in ("path_search", "corridor_builder", "trajectory_optimizer", "tracker",
+                      "map_server"):
             with self.subTest(stage=stage):
                 outcome, report = self.conform(stage, "-n", "20")
                 self.assertEqual(self.failed(report), {})
                 self.assertEqual(outcome.status, 0)
-                self.assertGreaterEqual(len(report["items"]), 19)
+                self.assertGreaterEqual(len(report["items"]), 15)
                 note(f"{stage}: {len(report['items'])} items, {report['latency']['p50_ms']:.2f} ms")
 
     def test_the_simple_search_in_c_plans_well_and_checks_little(self):
