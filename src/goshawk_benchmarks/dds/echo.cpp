@@ -8,7 +8,7 @@ namespace goshawk::bench {
 namespace {
 
 constexpr std::uint64_t kHowMany = std::uint64_t{1} << 63;  // a ping that asks for the count
-constexpr double kMeet_s = 20.0;
+constexpr double kEchoWithin_s = 20.0;
 constexpr double kTimeout_s = 2.0;  // then a message is lost
 constexpr int kWarm = 5;
 
@@ -61,11 +61,11 @@ Asker::Asker(const LinkOptions& options, Member& member)
       pongs_(member, "pong", [this](const Stamp& stamp) { answer_ = stamp; }) {
   const std::int64_t begin_ns = steady_ns();
   while (pings_.matched() == 0 || flood_.matched() == 0 || pongs_.matched() == 0) {
-    if (seconds_since(begin_ns) > kMeet_s) throw std::runtime_error("no echo was found");
+    if (seconds_since(begin_ns) > kEchoWithin_s) throw std::runtime_error("no echo was found");
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
   while (!ask({++number_, 0}, 0.1)) {
-    if (seconds_since(begin_ns) > kMeet_s) throw std::runtime_error("the echo does not answer");
+    if (seconds_since(begin_ns) > kEchoWithin_s) throw std::runtime_error("the echo does not answer");
   }
 }
 

@@ -146,7 +146,7 @@ TEST(Config, OffersOnlyWordsThatItTakes) {
       }
     }
   });
-  EXPECT_EQ(words_seen, 8 + 2 + 3 + 4);
+  EXPECT_EQ(words_seen, 8 + 2 + 4 + 4 + 2);
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "clock_time.hpp"
+
 namespace goshawk::tracker {
 namespace {
 

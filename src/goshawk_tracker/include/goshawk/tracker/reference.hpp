@@ -6,11 +6,6 @@
 
 namespace goshawk::tracker {
 
-/// [s] from one time to another
-inline double seconds(std::int64_t from_ns, std::int64_t to_ns) {
-  return double(to_ns - from_ns) * 1e-9;
-}
-
 /// Where the vehicle should be at any moment: at a point, or on a trajectory, which may be told to
 /// brake. Braking slows the time along the path down to a stop, so that the reference never leaves
 /// the certified curve. A function of time alone: asking changes nothing.
