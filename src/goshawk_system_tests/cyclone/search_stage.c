@@ -124,6 +124,7 @@ static bool check(dds_entity_t reports, const Request* r) {
 }
 
 static void answer(dds_entity_t paths, dds_entity_t reports, const Grid* g, const Request* r) {
+  const dds_time_t begin_ns = dds_time();
   if (!check(reports, r)) return;
   if (g == NULL) return report(reports, r, "no_map", "no map has come yet");
   const long start = voxel_of(g, r->start.position);
@@ -148,6 +149,7 @@ static void answer(dds_entity_t paths, dds_entity_t reports, const Grid* g, cons
     m.waypoints._buffer = points;
     m.waypoints._length = m.waypoints._maximum = corners(g, r, start, goal, parent, points);
     m.raw = m.waypoints;
+    m.compute_ns = dds_time() - begin_ns;
     dds_write(paths, &m);
     report(reports, r, "ok", "");
   }
