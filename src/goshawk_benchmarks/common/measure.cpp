@@ -3,8 +3,8 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <stdexcept>
 
 namespace goshawk::bench {
@@ -23,10 +23,16 @@ double nearest_rank(const std::vector<double>& sorted, double q) {
   return sorted[std::size_t(std::clamp(rank, 0.0, double(sorted.size() - 1)))];
 }
 
-double seconds_of(const std::function<void()>& run) {
-  const auto begin = std::chrono::steady_clock::now();
+double now_s(Clock clock) {
+  timespec t{};
+  clock_gettime(clock == Clock::wall ? CLOCK_MONOTONIC : CLOCK_THREAD_CPUTIME_ID, &t);
+  return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
+}
+
+double seconds_of(const std::function<void()>& run, Clock clock) {
+  const double begin_s = now_s(clock);
   run();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return now_s(clock) - begin_s;
 }
 
 }  // namespace
@@ -41,7 +47,7 @@ void Timing::append(const Timing& other) {
 }
 
 std::vector<Timing> compare(const std::string& name, const std::vector<Contender>& contenders,
-                            int rounds) {
+                            int rounds, Clock clock) {
   if (rounds < 1) throw std::logic_error("a comparison of no rounds");
   std::vector<Timing> timings(contenders.size());
   for (const Contender& c : contenders) c.run();
@@ -52,7 +58,7 @@ std::vector<Timing> compare(const std::string& name, const std::vector<Contender
                                    double sum_s = 0.0;
                                    for (std::size_t i = 0; i < contenders.size(); ++i) {
                                      const std::size_t which = (i + turn) % contenders.size();
-                                     const double s = seconds_of(contenders[which].run);
+                                     const double s = seconds_of(contenders[which].run, clock);
                                      timings[which].sorted_us.push_back(s * 1e6);
                                      sum_s += s;
                                    }

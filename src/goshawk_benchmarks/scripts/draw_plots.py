@@ -4,6 +4,7 @@
 import json
 import os
 import sys
+import textwrap
 
 try:
     import matplotlib
@@ -32,10 +33,17 @@ def draw(report, plot, folder):
         xs, ys = [r[plot["x"]] for r in mine], [r[plot["y"]] for r in mine]
         style = {"marker": MARKERS[index % len(MARKERS)], "label": name or None}
         axes.plot(xs, ys, linestyle="none" if plot["points_only"] else "-", **style)
+    named = any(isinstance(r[plot["x"]], str) for r in rows)
+    if named:
+        names = list(dict.fromkeys(r[plot["x"]] for r in rows))
+        axes.set_xticks(range(len(names)), [textwrap.fill(n, 12) for n in names], fontsize="small")
+        axes.margins(x=0.6 / len(names))
     if plot["log_x"]:
         axes.set_xscale("log")
     if plot["log_y"]:
         axes.set_yscale("log")
+    elif plot["points_only"] and not named:
+        axes.margins(y=0.15)  # a cloud of points: its spread matters, not its distance from zero
     else:
         axes.set_ylim(bottom=min(0, axes.get_ylim()[0]))
     axes.set(title=plot["title"], xlabel=plot["x_label"], ylabel=plot["y_label"])

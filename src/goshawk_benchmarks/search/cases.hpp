@@ -27,6 +27,11 @@ struct Case {
   std::vector<std::string> planners = {};
   std::vector<std::optional<ThesisFigures>> thesis = {};  // one a planner, or none at all
   double seconds_a_query = 0.05;                          // how long rounds go on, at most 15
+
+  /// Map and ratio, for a picture.
+  std::string label() const {
+    return ratio ? map + ", " + std::to_string(*ratio).substr(0, 4) : map;
+  }
 };
 
 /// Queries without a path are left out, in all of these. Adds one row a planner: the median over

@@ -210,7 +210,7 @@ void others(Report& report, bool quick) {
                    .ratio = 0.2,
                    .rule = "no_squeeze",
                    .worlds = seeds(quick ? 2 : 10, worlds::boxes, {50, 50, 25}, 0.2),
-                   .planners = {"jastar", "rrt", "rrtstar", "prm"}};
+                   .planners = {"jastar", "rrt", "rrtstar", "prm", "rrt, fcl", "prm, fcl"}};
   measure_sampling(report, boxes);
   Case pruning = boxes;
   pruning.table = "pruning";
@@ -234,17 +234,19 @@ void others(Report& report, bool quick) {
 }
 
 void plots_of_classes(Report& report) {
-  for (const char* table : {"structured", "real", "big"}) {
-    report.draw({.file = table,
-                 .title = std::string(table) + " maps, no_squeeze",
-                 .x = "map",
-                 .y = "median_us",
-                 .x_label = "",
-                 .y_label = "time of a query [us]",
-                 .series = "planner",
-                 .where = {{"table", table}, {"rule", "no_squeeze"}},
-                 .log_y = true,
-                 .points_only = true});
+  for (const std::string table : {"structured", "real", "big"}) {
+    for (const std::string& rule : kRules) {
+      report.draw({.file = rule == "squeeze" ? table + "_squeeze" : table,
+                   .title = "Maps of the table \"" + table + "\", " + rule,
+                   .x = "label",
+                   .y = "median_us",
+                   .x_label = "",
+                   .y_label = "time of a query [us]",
+                   .series = "planner",
+                   .where = {{"table", table}, {"rule", rule}},
+                   .log_y = true,
+                   .points_only = true});
+    }
   }
   report.draw({.file = "sampling",
                .title = "JA* beside planners that sample, 10x10x5 m, boxes at 0.2",

@@ -19,7 +19,10 @@ constexpr const char* kPlan = "plan";
 /// All but the first are programs of goshawk_benchmarks, bench_NAME.
 constexpr Bench kBenches[] = {
     {kPlan, "latency of whole plans over DDS, by stage"},
-    {"stage", "STAGE --input RECORDING: one stage on recorded inputs, beside another's"},
+    {"stage",
+     "STAGE --input RECORDING: one stage on recorded inputs, in a process and in one, beside "
+     "another's"},
+    {"dds", "the middleware alone, by transport and size; setpoints beside large maps"},
     {"search", "grid searches beside a plain A*: time, nodes, length, set-up, growth"},
     {"scenario", "MAP.3dmap SCEN.3dscen: lengths and times on public voxel problems"},
     {"corridor", "corridor generators: time, volume, faces, obstacles cut"},

@@ -17,7 +17,7 @@ namespace {
 using namespace goshawk::runtime;
 namespace msg = goshawk_msgs::msg;
 
-struct Options {
+struct BenchOptions {
   MapOptions map;
   std::string start = "3,0,1";
   std::string goal = "3,8,2";
@@ -118,7 +118,7 @@ Json percentiles(const std::vector<std::int64_t>& values) {
           {"max_us", percentile_us(values, 1.0)}};
 }
 
-Json to_json(const std::vector<Sample>& samples, const Options& o) {
+Json to_json(const std::vector<Sample>& samples, const BenchOptions& o) {
   std::vector<std::int64_t> totals;
   std::vector<std::int64_t> wires;
   for (const auto& s : samples) {
@@ -165,7 +165,7 @@ void print(const Json& result) {
               result["not_compute"]["p50_us"].get<double>());
 }
 
-Result<std::vector<Sample>> measure(const Options& o, const std::string& map_file,
+Result<std::vector<Sample>> measure(const BenchOptions& o, const std::string& map_file,
                                     const std::string& folder, const Vec3& start, const Vec3& goal,
                                     const Limits& limits) {
   const auto domain = private_domain();
@@ -203,7 +203,7 @@ Result<std::vector<Sample>> measure(const Options& o, const std::string& map_fil
   return samples;
 }
 
-int run(const Options& o) {
+int run(const BenchOptions& o) {
   const auto start = parse_point(o.start);
   const auto goal = parse_point(o.goal);
   if (!start || !goal)
@@ -226,7 +226,7 @@ int run(const Options& o) {
 int bench_plan_command(const Arguments& arguments) {
   CLI::App app("Latency of whole plans over DDS, by stage: compute, and time on the wire.",
                "goshawk bench plan");
-  Options o;
+  BenchOptions o;
   o.map.add_to(app);
   app.add_option("--start", o.start, "x,y,z [m]")->capture_default_str();
   app.add_option("--goal", o.goal, "x,y,z [m]")->capture_default_str();

@@ -9,10 +9,9 @@ namespace {
 
 using flight_check::Body;
 using flight_check::FlightCheck;
-using flight_check::Sample;
 using flight_check::Verdict;
 
-struct Options {
+struct CheckOptions {
   std::string flight;
   std::string map;
   Body body;
@@ -55,7 +54,7 @@ struct Judged {
   bool touched() const { return contact() != nullptr; }
 };
 
-Result<Body> body_of(const Options& o) {
+Result<Body> body_of(const CheckOptions& o) {
   Body body = o.body;
   if (!o.box.empty()) {
     const auto edges = parse_point(o.box);
@@ -71,7 +70,7 @@ Result<Body> body_of(const Options& o) {
   return body;
 }
 
-Result<Judged> judge(const Options& o, const Body& body) {
+Result<Judged> judge(const CheckOptions& o, const Body& body) {
   const std::filesystem::path flight(o.flight);
   std::error_code ignored;
   const bool folder = std::filesystem::is_directory(flight, ignored);
@@ -100,7 +99,7 @@ Result<Judged> judge(const Options& o, const Body& body) {
   return judged;
 }
 
-void print(const Judged& judged, const Options& o) {
+void print(const Judged& judged, const CheckOptions& o) {
   const ErrorCode code = judged.touched() ? ErrorCode::collision : ErrorCode::ok;
   if (o.json) {
     Json planned = Json::array();
@@ -126,7 +125,7 @@ void print(const Judged& judged, const Options& o) {
 int check_command(const Arguments& arguments) {
   CLI::App app("Judge a flight: the vehicle's body, in its true attitude, against the raw map.",
                "goshawk check");
-  Options options;
+  CheckOptions options;
   options.add_to(app);
   if (const auto status = parse(app, arguments)) return *status;
   const auto body = body_of(options);

@@ -11,7 +11,7 @@
 namespace goshawk::cli {
 namespace {
 
-struct Options {
+struct ConformOptions {
   conformance::Options kit;
   bool running = false;
   std::string launch;
@@ -49,14 +49,14 @@ void print(const conformance::Report& report) {
 }
 
 // Our own component, where no other is named.
-Result<std::string> launch_file(const Options& o, const std::string& folder) {
+Result<std::string> launch_file(const ConformOptions& o, const std::string& folder) {
   if (!o.launch.empty()) return o.launch;
   const std::string file = folder + "/stage.yaml";
   std::ofstream(file) << "stages: [{component: " << o.kit.stage << "}]\n";
   return file;
 }
 
-Result<conformance::Report> examine(const Options& o, const std::string& folder) {
+Result<conformance::Report> examine(const ConformOptions& o, const std::string& folder) {
   auto options = runtime::ContextOptions::from_environment();
   if (!options) return options.error();
   std::optional<LaunchProcess> launch;
@@ -76,7 +76,7 @@ Result<conformance::Report> examine(const Options& o, const std::string& folder)
   return conformance::conform(**context, o.kit);
 }
 
-int run(Options o) {
+int run(ConformOptions o) {
   o.kit.fresh = !o.running;
   const TemporaryFolder folder;
   const auto report = examine(o, folder.path());
@@ -95,7 +95,7 @@ int conform_command(const Arguments& arguments) {
       "Examine a stage, whoever wrote it: good and bad requests on its topics, every answer "
       "judged.",
       "goshawk conform");
-  Options o;
+  ConformOptions o;
   app.add_option("stage", o.kit.stage, "path_search, corridor_builder or trajectory_optimizer")
       ->required();
   auto* running = app.add_flag("--against-running", o.running,

@@ -11,7 +11,7 @@
 namespace goshawk::cli {
 namespace {
 
-struct Options {
+struct PlanOptions {
   MapOptions map;
   std::string start = "3,0,1";
   std::string goal = "3,8,2";
@@ -68,7 +68,7 @@ Status save(const Plan& plan, const LoadedMap& map, const Limits& limits,
   return flight_report::write_flight_page(flight, page_template(), folder + "/flight.html");
 }
 
-int run(const Options& options, const std::string& map_file) {
+int run(const PlanOptions& options, const std::string& map_file) {
   const bool json = options.json;
   const auto start = parse_point(options.start);
   if (!start) return report_failure(start.error(), json, kWrongCall);
@@ -110,7 +110,7 @@ int run(const Options& options, const std::string& map_file) {
 
 int plan_command(const Arguments& arguments) {
   CLI::App app("Plan once, in this process, without DDS, and print the result.", "goshawk plan");
-  Options options;
+  PlanOptions options;
   options.map.add_to(app);
   app.add_option("--start", options.start, "x,y,z [m] frame map")->capture_default_str();
   app.add_option("--goal", options.goal, "x,y,z [m] frame map")->capture_default_str();

@@ -63,8 +63,8 @@ class Planner {
       : search_(std::move(search)),
         builder_(std::move(builder)),
         optimizer_(std::move(optimizer)) {}
-  Status run(const FlatState& start, const std::vector<Vec3>& goals_map,
-             const Limits& limits, Plan& plan);
+  Status run(const FlatState& start, const std::vector<Vec3>& goals_map, const Limits& limits,
+             Plan& plan);
 
   path_search::PathSearch search_;
   corridor_builder::CorridorBuilder builder_;

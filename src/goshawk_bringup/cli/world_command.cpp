@@ -11,7 +11,7 @@
 namespace goshawk::cli {
 namespace {
 
-struct Options {
+struct WorldOptions {
   worlds::WorldSpec spec = worlds::default_world();
   std::string size;
   std::string origin;
@@ -28,7 +28,7 @@ struct Made {
   std::string kind;
 };
 
-Status read_points(Options& o) {
+Status read_points(WorldOptions& o) {
   const auto read = [](const std::string& text, Vec3& out) -> Status {
     if (text.empty()) return success();
     auto point = parse_point(text);
@@ -49,7 +49,7 @@ Status read_points(Options& o) {
   return success();
 }
 
-Result<Made> make(const Options& o) {
+Result<Made> make(const WorldOptions& o) {
   if (o.convert.empty()) {
     auto world = worlds::make_world(o.spec);
     if (!world) return world.error();
@@ -64,7 +64,7 @@ Result<Made> make(const Options& o) {
   return Made{raw->geometry, std::move(raw->occupied), std::move(raw->known), source->format};
 }
 
-Json describe(const Made& made, const Options& o, double grown_ratio) {
+Json describe(const Made& made, const WorldOptions& o, double grown_ratio) {
   const auto& g = made.geometry;
   const double voxels = double(made.occupied.voxels());
   return {{"ok", true},
@@ -83,7 +83,7 @@ Json describe(const Made& made, const Options& o, double grown_ratio) {
           {"grown_ratio", grown_ratio}};
 }
 
-int run(Options& o) {
+int run(WorldOptions& o) {
   if (auto s = read_points(o); !s) return report_failure(s.error(), o.json, kWrongCall);
   const auto made = make(o);
   if (!made) {
@@ -112,7 +112,7 @@ int world_command(const Arguments& arguments) {
       "Make a world from a few numbers, or convert a map. The same call gives the same "
       "bytes on every machine.",
       "goshawk world");
-  Options o;
+  WorldOptions o;
   app.add_option("output", o.output, "file to write: .bt or .ot")->required();
   app.add_option("--kind", o.spec.kind, "boxes, forest, office or noise")->capture_default_str();
   app.add_option("--size", o.size, "x,y,z [m] (default: the padded 6 x 8 x 4 m world)");

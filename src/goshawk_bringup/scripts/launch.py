@@ -170,6 +170,8 @@ def supervisor_configuration(plan, logs, socket):
              "supervisor.rpcinterface:make_main_rpcinterface"]
     if os.geteuid() == 0:
         lines.insert(4, "user=root")
+    # One group: supervisord stops groups one after the other, a second or two for each.
+    lines += ["[group:stages]", "programs=" + ",".join(plan.programs)]
     for name, command in plan.programs.items():
         lines += [f"[program:{name}]", "command=" + " ".join(quoted(a) for a in command),
                   "autostart=true", "autorestart=true", "startsecs=1", f"startretries={RETRIES}",

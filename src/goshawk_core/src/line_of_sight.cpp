@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kSlack = 1e-9;  // [voxel edges] a cube this near to the segment counts as met
 
-struct Range {
+struct IndexRange {
   int first;
   int last;
 };
@@ -22,7 +22,7 @@ struct Bounds {
   Index3 first;
   Index3 last;
 
-  Range axis(int i) const {
+  IndexRange axis(int i) const {
     const int lo[] = {first.x, first.y, first.z};
     const int hi[] = {last.x, last.y, last.z};
     return {lo[i], hi[i]};
@@ -31,7 +31,7 @@ struct Bounds {
 
 // Indices within bounds of the closed unit intervals [i, i + 1] that meet the closed interval
 // [lo, hi]. Compared as doubles first: a cast of a huge value to int is undefined.
-Range intervals_met(double lo, double hi, Range bounds) {
+IndexRange intervals_met(double lo, double hi, IndexRange bounds) {
   const double first = std::max(std::ceil(lo - kSlack) - 1.0, double(bounds.first));
   const double last = std::min(std::floor(hi + kSlack), double(bounds.last));
   if (!(first <= last)) return {0, -1};
@@ -72,19 +72,19 @@ bool walk(const Vec3& a, const Vec3& b, const Bounds& bounds, const Visit& visit
   const int w = (u + 2) % 3;
   const Interval whole{0.0, 1.0};
   const Interval along = extent(a, d, u, whole);
-  const Range slabs = intervals_met(along.lo, along.hi, bounds.axis(u));
+  const IndexRange slabs = intervals_met(along.lo, along.hi, bounds.axis(u));
   const bool forward = d[u] >= 0.0;
   for (int n = 0; n <= slabs.last - slabs.first; ++n) {
     const int i = forward ? slabs.first + n : slabs.last - n;
     const Interval t = clip(a, d, u, i - kSlack, i + 1 + kSlack, whole);
     if (t.lo > t.hi) continue;
     const Interval across = extent(a, d, v, t);
-    const Range rows = intervals_met(across.lo, across.hi, bounds.axis(v));
+    const IndexRange rows = intervals_met(across.lo, across.hi, bounds.axis(v));
     for (int j = rows.first; j <= rows.last; ++j) {
       const Interval s = clip(a, d, v, j - kSlack, j + 1 + kSlack, t);
       if (s.lo > s.hi) continue;
       const Interval rest = extent(a, d, w, s);
-      const Range cells = intervals_met(rest.lo, rest.hi, bounds.axis(w));
+      const IndexRange cells = intervals_met(rest.lo, rest.hi, bounds.axis(w));
       for (int k = cells.first; k <= cells.last; ++k) {
         int index[3];
         index[u] = i;

@@ -7,7 +7,7 @@
 namespace goshawk {
 namespace {
 
-VoxelGrid small_grid() {
+VoxelGrid grid_to_update() {
   VoxelGrid grid;
   grid.geometry = {Vec3::Zero(), 0.1, {70, 9, 3}};
   grid.occupied = BitGrid(grid.geometry.size, true);
@@ -31,7 +31,7 @@ TEST(GridUpdate, BricksCoverTheGrid) {
 }
 
 TEST(GridUpdate, ABrickAtTheEdgeTouchesNeitherPaddingNorNeighbours) {
-  VoxelGrid grid = small_grid();
+  VoxelGrid grid = grid_to_update();
   ASSERT_TRUE(apply(grid, {5, 6, {full_brick({1, 1, 0})}}));
   EXPECT_EQ(grid.version, 6U);
   EXPECT_EQ(grid.occupied.count(), 6 * 1 * 3);
@@ -43,7 +43,7 @@ TEST(GridUpdate, ABrickAtTheEdgeTouchesNeitherPaddingNorNeighbours) {
 }
 
 TEST(GridUpdate, WhatDoesNotFitIsRefusedWholly) {
-  const VoxelGrid before = small_grid();
+  const VoxelGrid before = grid_to_update();
   VoxelGrid grid = before;
   const auto refused = [&](const GridUpdate& update) {
     EXPECT_EQ(apply(grid, update).code(), ErrorCode::invalid_input);

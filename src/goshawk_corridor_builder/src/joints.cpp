@@ -6,7 +6,7 @@ namespace goshawk::corridor_builder {
 namespace {
 
 constexpr double kNearlyAsGood = 0.7;
-constexpr double kRounding = 1e-6;  // [voxel edges] balls are found by a linear programme
+constexpr double kSolverRounding = 1e-6;  // [voxel edges] balls are found by a linear programme
 
 // How far from `from` (0) to `center` (1) a point has at least `clearance` to every face: slacks
 // are linear along the way.
@@ -57,7 +57,7 @@ void drop_covered(double resolution_m, double start_room_m, double goal_room_m, 
   while (chain.size() > 1 && chain[chain.size() - 2].room(chain.joints_map.back()) >= goal_room_m) {
     drop_last(chain);
   }
-  const double half_voxel_m = (kHalfVoxel - kRounding) * resolution_m;
+  const double half_voxel_m = (kHalfVoxel - kSolverRounding) * resolution_m;
   for (std::size_t k = 1; k + 1 < chain.size();) {
     const Ball shortcut = largest_ball(chain[k - 1], chain[k + 1]);
     const double before = std::min(chain.overlaps[k - 1].radius_m, chain.overlaps[k].radius_m);

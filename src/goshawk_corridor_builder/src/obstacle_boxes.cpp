@@ -6,28 +6,31 @@
 namespace goshawk::corridor_builder {
 namespace {
 
+using Word = BitGrid::Word;
 constexpr int kBits = BitGrid::kWordBits;
 
-// The word with the bits outside [x0, x1) cleared; `w` is the word's place in its row.
-BitGrid::Word masked(const BitGrid::Word* row, int w, int x0, int x1) {
-  BitGrid::Word word = row[w];
-  if (w * kBits < x0) word &= ~BitGrid::Word{0} << (x0 - w * kBits);
-  if ((w + 1) * kBits > x1) word &= ~BitGrid::Word{0} >> ((w + 1) * kBits - x1);
-  return word;
-}
-
 // Voxels x0 to x1 of a row as one word, the first in its lowest bit. @pre x1 - x0 <= 64
-BitGrid::Word gathered(const BitGrid::Word* row, int x0, int x1) {
+Word gathered(const Word* row, int x0, int x1) {
   const int w = x0 / kBits;
   const int shift = x0 % kBits;
-  BitGrid::Word word = row[w] >> shift;
+  Word word = row[w] >> shift;
   if (shift != 0 && (w + 1) * kBits < x1) word |= row[w + 1] << (kBits - shift);
   const int count = x1 - x0;
-  return count < kBits ? word & ~(~BitGrid::Word{0} << count) : word;
+  return count < kBits ? word & ~(~Word{0} << count) : word;
 }
 
-bool is_narrow(const VoxelBox& region) {
-  return region.hi.x - region.lo.x <= kBits;
+struct Run {
+  int begin, end;
+  Word mask;
+};
+
+// The longest run of ones that holds a bit. @pre the bit is set
+Run run_around(Word word, int bit) {
+  const Word zeros_below = ~word & ((Word{1} << bit) - 1);
+  const int begin = kBits - std::countl_zero(zeros_below);
+  const int length = std::countr_one(word >> begin);
+  const Word ones = length < kBits ? (Word{1} << length) - 1 : ~Word{0};
+  return {begin, begin + length, ones << begin};
 }
 
 }  // namespace
@@ -65,136 +68,67 @@ void BoxSet::resize(std::size_t n) {
 
 void ObstacleMerger::collect(const BitGrid& occupied, const VoxelBox& region, Index3 base,
                              double radius, BoxSet& boxes) {
-  base_ = Vec3(base.x, base.y, base.z);
-  radius_ = radius;
-  open_.clear();
-  for (int z = region.lo.z; z < region.hi.z; ++z) {
-    if (z > region.lo.z && layer_repeats(occupied, region, z)) continue;
-    collect_layer(occupied, region, z);
-    join_layers(z, boxes);
+  VoxelBox slab = region;
+  for (; slab.lo.x < region.hi.x; slab.lo.x = slab.hi.x) {
+    slab.hi.x = std::min(slab.lo.x + kBits, region.hi.x);
+    gather(occupied, slab);
+    const Index3 offset = slab.lo - base;
+    merge(Vec3(offset.x, offset.y, offset.z), radius, boxes);
   }
-  for (const Rectangle& r : open_) emit(r, region.hi.z, boxes);
 }
 
-bool ObstacleMerger::layer_repeats(const BitGrid& occupied, const VoxelBox& region, int z) const {
-  const int first = region.lo.x / kBits;
-  const int last = (region.hi.x - 1) / kBits;
-  const bool narrow = is_narrow(region);
-  for (int y = region.lo.y; y < region.hi.y; ++y) {
-    const BitGrid::Word* above = occupied.row(y, z);
-    const BitGrid::Word* below = occupied.row(y, z - 1);
-    if (narrow) {
-      if (gathered(above, region.lo.x, region.hi.x) != gathered(below, region.lo.x, region.hi.x)) {
-        return false;
+// A layer that equals the one below is left out.
+void ObstacleMerger::gather(const BitGrid& occupied, const VoxelBox& slab) {
+  rows_ = slab.hi.y - slab.lo.y;
+  const auto n = std::size_t(rows_);
+  words_.resize(n * std::size_t(slab.hi.z - slab.lo.z));
+  heights_.clear();
+  Word* layer = words_.data();
+  const std::size_t stride = occupied.words_per_row();
+  for (int z = slab.lo.z; z < slab.hi.z; ++z) {
+    const Word* row = occupied.row(slab.lo.y, z);
+    for (std::size_t y = 0; y < n; ++y) layer[y] = gathered(row + y * stride, slab.lo.x, slab.hi.x);
+    if (!heights_.empty() && std::equal(layer, layer + n, layer - n)) continue;
+    heights_.push_back(z - slab.lo.z);
+    layer += n;
+  }
+  layers_ = int(heights_.size());
+  heights_.push_back(slab.hi.z - slab.lo.z);
+  rest_.assign(words_.data(), layer);
+}
+
+void ObstacleMerger::merge(const Vec3& offset, double radius, BoxSet& boxes) {
+  for (int z = 0; z < layers_; ++z) {
+    for (int y = 0; y < rows_; ++y) {
+      while (const Word rest = rest_[at(y, z)]) {
+        const Run run = run_around(words_[at(y, z)], std::countr_zero(rest));
+        int y0 = y, y1 = y + 1, z0 = z, z1 = z + 1;
+        while (y0 > 0 && layer_holds(run.mask, y0 - 1, y0, z)) --y0;
+        while (y1 < rows_ && layer_holds(run.mask, y1, y1 + 1, z)) ++y1;
+        while (z0 > 0 && layer_holds(run.mask, y0, y1, z0 - 1)) --z0;
+        while (z1 < layers_ && layer_holds(run.mask, y0, y1, z1)) ++z1;
+        clear(run.mask, y0, y1, z, z1);
+        boxes.add(offset + Vec3(run.begin, y0, heights_[std::size_t(z0)]),
+                  offset + Vec3(run.end, y1, heights_[std::size_t(z1)]), radius);
       }
-      continue;
     }
-    for (int w = first; w <= last; ++w) {
-      if (masked(above, w, region.lo.x, region.hi.x) !=
-          masked(below, w, region.lo.x, region.hi.x)) {
-        return false;
-      }
-    }
+  }
+}
+
+bool ObstacleMerger::layer_holds(Word mask, int y0, int y1, int z) const {
+  const Word* words = words_.data() + at(0, z);
+  for (int y = y0; y < y1; ++y) {
+    if ((words[y] & mask) != mask) return false;
   }
   return true;
 }
 
-void ObstacleMerger::collect_layer(const BitGrid& occupied, const VoxelBox& region, int z) {
-  layer_.clear();
-  previous_row_.clear();
-  const bool narrow = is_narrow(region);
-  BitGrid::Word previous = 0;
-  for (int y = region.lo.y; y < region.hi.y; ++y) {
-    if (!narrow) {
-      row_.clear();
-      collect_row(occupied.row(y, z), region, y, z);
-      std::swap(row_, previous_row_);
-      continue;
-    }
-    const BitGrid::Word word = gathered(occupied.row(y, z), region.lo.x, region.hi.x);
-    if (word == previous) {
-      for (const Run& run : previous_row_) layer_[run.rectangle].y1 = y + 1;
-      continue;
-    }
-    row_.clear();
-    collect_narrow_row(word, region.lo.x, y, z);
-    std::swap(row_, previous_row_);
-    previous = word;
+// Layers below z0 are done already.
+void ObstacleMerger::clear(Word mask, int y0, int y1, int z0, int z1) {
+  for (int z = z0; z < z1; ++z) {
+    Word* words = rest_.data() + at(0, z);
+    for (int y = y0; y < y1; ++y) words[y] &= ~mask;
   }
-}
-
-void ObstacleMerger::collect_narrow_row(BitGrid::Word word, int x0, int y, int z) {
-  std::size_t before = 0;
-  while (word != 0) {
-    const int start = std::countr_zero(word);
-    const int length = std::countr_one(word >> start);
-    add_run(x0 + start, x0 + start + length, y, z, before);
-    if (start + length >= kBits) break;
-    word &= ~BitGrid::Word{0} << (start + length);
-  }
-}
-
-void ObstacleMerger::collect_row(const BitGrid::Word* row, const VoxelBox& region, int y, int z) {
-  std::size_t before = 0;
-  int start = -1;  // of a run that reaches the end of the word before
-  const int last = (region.hi.x - 1) / kBits;
-  for (int w = region.lo.x / kBits; w <= last; ++w) {
-    const BitGrid::Word word = masked(row, w, region.lo.x, region.hi.x);
-    int bit = 0;
-    while (bit < kBits) {
-      const BitGrid::Word rest = word >> bit;
-      if (start < 0) {
-        if (rest == 0) break;
-        bit += std::countr_zero(rest);
-        start = w * kBits + bit;
-      } else {
-        const int ones = std::countr_one(rest);
-        bit += ones;
-        if (bit >= kBits) break;
-        add_run(start, w * kBits + bit, y, z, before);
-        start = -1;
-      }
-    }
-  }
-  if (start >= 0) add_run(start, region.hi.x, y, z, before);
-}
-
-void ObstacleMerger::add_run(int x0, int x1, int y, int z, std::size_t& before) {
-  while (before < previous_row_.size() && previous_row_[before].x0 < x0) ++before;
-  if (before < previous_row_.size() && previous_row_[before].x0 == x0 &&
-      previous_row_[before].x1 == x1) {
-    const std::size_t rectangle = previous_row_[before].rectangle;
-    layer_[rectangle].y1 = y + 1;
-    row_.push_back({x0, x1, rectangle});
-  } else {
-    row_.push_back({x0, x1, layer_.size()});
-    layer_.push_back({x0, x1, y, y + 1, z});
-  }
-}
-
-// Both lists are in order of (y0, x0), and no two of a list share it.
-void ObstacleMerger::join_layers(int z, BoxSet& boxes) {
-  auto before = [](const Rectangle& a, const Rectangle& b) {
-    return a.y0 != b.y0 ? a.y0 < b.y0 : a.x0 < b.x0;
-  };
-  std::size_t k = 0;
-  for (Rectangle& r : layer_) {
-    while (k < open_.size() && before(open_[k], r)) emit(open_[k++], z, boxes);
-    if (k < open_.size() && !before(r, open_[k])) {
-      if (open_[k].x1 == r.x1 && open_[k].y1 == r.y1) {
-        r.z0 = open_[k].z0;
-      } else {
-        emit(open_[k], z, boxes);
-      }
-      ++k;
-    }
-  }
-  for (; k < open_.size(); ++k) emit(open_[k], z, boxes);
-  std::swap(open_, layer_);
-}
-
-void ObstacleMerger::emit(const Rectangle& r, int z1, BoxSet& boxes) const {
-  boxes.add(Vec3(r.x0, r.y0, r.z0) - base_, Vec3(r.x1, r.y1, z1) - base_, radius_);
 }
 
 }  // namespace goshawk::corridor_builder

@@ -32,10 +32,11 @@ struct BoxSet {
   void resize(std::size_t n);
 };
 
-/// Merges the set voxels of a region into boxes: runs along x, equal runs along y, equal
-/// rectangles along z. Every set voxel is in exactly one box, and no clear one is in any. Rows
-/// are read 64 voxels at a time; a row or a layer that equals the one before costs only its
-/// comparison.
+/// Merges the set voxels of a region into boxes: the longest run along x that holds a voxel is
+/// widened along y, then along z, as far as all of it stays set. Every set voxel is in a box, and
+/// no clear one is in any; boxes may overlap, which makes them fewer. Rows are read and compared 64
+/// voxels at a time (wider regions are merged in slabs of 64 voxels), and layers that equal the one
+/// below cost only their comparison.
 class ObstacleMerger {
  public:
   /// Appends to `boxes`, relative to the voxel corner `base`.
@@ -44,28 +45,18 @@ class ObstacleMerger {
                BoxSet& boxes);
 
  private:
-  struct Run {
-    int x0, x1;
-    std::size_t rectangle;  // in layer_
-  };
-  struct Rectangle {
-    int x0, x1, y0, y1, z0;
-  };
+  using Word = BitGrid::Word;
 
-  bool layer_repeats(const BitGrid& occupied, const VoxelBox& region, int z) const;
-  void collect_layer(const BitGrid& occupied, const VoxelBox& region, int z);
-  void collect_row(const BitGrid::Word* row, const VoxelBox& region, int y, int z);
-  void collect_narrow_row(BitGrid::Word word, int x0, int y, int z);
-  void add_run(int x0, int x1, int y, int z, std::size_t& before);
-  void join_layers(int z, BoxSet& boxes);
-  void emit(const Rectangle& r, int z1, BoxSet& boxes) const;
+  void gather(const BitGrid& occupied, const VoxelBox& slab);
+  void merge(const Vec3& offset, double radius, BoxSet& boxes);
+  bool layer_holds(Word mask, int y0, int y1, int z) const;
+  void clear(Word mask, int y0, int y1, int z0, int z1);
+  std::size_t at(int y, int z) const { return std::size_t(z * rows_ + y); }
 
-  Vec3 base_ = Vec3::Zero();
-  double radius_ = 0.0;
-  std::vector<Run> row_;
-  std::vector<Run> previous_row_;
-  std::vector<Rectangle> layer_;
-  std::vector<Rectangle> open_;  // rectangles that still grow along z, in order of (y0, x0)
+  int rows_ = 0, layers_ = 0;  // of the slab; layers that differ from the one below
+  std::vector<int> heights_;   // where each layer begins, and the last one ends
+  std::vector<Word> words_;    // a row each, y faster than z
+  std::vector<Word> rest_;     // what is in no box yet
 };
 
 }  // namespace goshawk::corridor_builder

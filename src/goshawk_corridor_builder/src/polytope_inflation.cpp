@@ -6,6 +6,20 @@
 namespace goshawk::corridor_builder {
 namespace {
 
+// The first of the least. Four at a time: the comparisons of one chain wait for each other.
+std::size_t index_of_least(const std::vector<double>& values) {
+  const double* v = values.data();
+  const std::size_t n = values.size();
+  double least[4] = {v[0], v[0], v[0], v[0]};
+  std::size_t i = 0;
+  for (; i + 4 <= n; i += 4) {
+    for (std::size_t k = 0; k < 4; ++k) least[k] = v[i + k] < least[k] ? v[i + k] : least[k];
+  }
+  for (; i < n; ++i) least[0] = v[i] < least[0] ? v[i] : least[0];
+  const double all = std::min({least[0], least[1], least[2], least[3]});
+  return std::size_t(std::find(v, v + n, all) - v);
+}
+
 // What a plane leaves of a box, in whole voxels: a layer of the box is cut off where all of it
 // is behind. @return false where nothing is left
 bool trim_by(const Vec3& n, double behind, Vec3& lower, Vec3& upper) {
@@ -38,8 +52,7 @@ PolytopeInflation::Result PolytopeInflation::inflate(const Ellipsoid& ellipsoid,
     const std::size_t i = nearest(ellipsoid, margins);
     if (i >= active_.size()) break;
     const Obstacle obstacle = active_.at(i);
-    const Vec3 offset = nearest_in_box(ellipsoid, obstacle.lower, obstacle.upper).offset;
-    Vec3 normal = ellipsoid.metric * offset;
+    Vec3 normal = ellipsoid.metric * progress_[i].offset;
     if (!(normal.norm() > 1e-12)) normal = Vec3::UnitX();
     Plane plane;
     const Separation separation = separate(normal, obstacle, segment, margins, plane);
@@ -60,12 +73,14 @@ PolytopeInflation::Result PolytopeInflation::inflate(const Ellipsoid& ellipsoid,
 // no box is left
 std::size_t PolytopeInflation::nearest(const Ellipsoid& ellipsoid, const Margins& margins) {
   while (active_.size() > 0) {
-    const std::size_t i =
-        std::size_t(std::min_element(squared_.begin(), squared_.end()) - squared_.begin());
+    const std::size_t i = index_of_least(squared_);
     if (trim(i, margins)) continue;
-    if (exact_[i]) return i;
-    squared_[i] = nearest_in_box(ellipsoid, active_.lower(i), active_.upper(i)).squared;
-    exact_[i] = 1;
+    Progress& progress = progress_[i];
+    if (progress.exact) return i;
+    const Nearest at = nearest_in_box(ellipsoid, active_.lower(i), active_.upper(i));
+    squared_[i] = at.squared;
+    progress.offset = at.offset;
+    progress.exact = true;
   }
   return active_.size();
 }
@@ -88,21 +103,23 @@ void PolytopeInflation::add_local_box(const Vec3& extent, const Segment& segment
 void PolytopeInflation::measure(const Ellipsoid& ellipsoid) {
   const std::size_t n = active_.size();
   squared_.resize(n);
-  exact_.assign(n, 0);
-  seen_.resize(n);
+  progress_.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
-    seen_[i] = active_.radius[i] > 0.0 ? 0 : 6;  // boxes without a sphere are in the local box
+    progress_[i].exact = false;
+    // Boxes without a sphere are in the local box.
+    progress_[i].seen = active_.radius[i] > 0.0 ? 0 : 6;
     squared_[i] = squared_at_least(ellipsoid, active_.lower(i), active_.upper(i));
   }
 }
 
 // @return true where box i is not what it was: smaller, or gone
 bool PolytopeInflation::trim(std::size_t i, const Margins& margins) {
-  if (seen_[i] == planes_.size()) return false;
+  std::size_t& seen = progress_[i].seen;
+  if (seen == planes_.size()) return false;
   Vec3 lower = active_.lower(i);
   Vec3 upper = active_.upper(i);
-  for (; seen_[i] < planes_.size(); ++seen_[i]) {
-    const Plane& plane = planes_[seen_[i]];
+  for (; seen < planes_.size(); ++seen) {
+    const Plane& plane = planes_[seen];
     if (!trim_by(plane.normal, margins.behind(plane) + active_.radius[i], lower, upper)) {
       remove(i);
       return true;
@@ -110,7 +127,7 @@ bool PolytopeInflation::trim(std::size_t i, const Margins& margins) {
   }
   if (lower == active_.lower(i) && upper == active_.upper(i)) return false;
   active_.set(i, lower, upper);
-  exact_[i] = 0;  // the distance of the larger box is a lower bound
+  progress_[i].exact = false;  // the distance of the larger box is a lower bound
   return true;
 }
 
@@ -132,27 +149,23 @@ void PolytopeInflation::drop_behind(const Plane& plane, const Margins& margins) 
     if (kept != i) {
       active_.copy(i, kept);
       squared_[kept] = squared_[i];
-      exact_[kept] = exact_[i];
-      seen_[kept] = seen_[i];
+      progress_[kept] = progress_[i];
     }
     ++kept;
   }
   active_.resize(kept);
   squared_.resize(kept);
-  exact_.resize(kept);
-  seen_.resize(kept);
+  progress_.resize(kept);
 }
 
 void PolytopeInflation::remove(std::size_t i) {
   const std::size_t last = active_.size() - 1;
   active_.copy(last, i);
   squared_[i] = squared_[last];
-  exact_[i] = exact_[last];
-  seen_[i] = seen_[last];
+  progress_[i] = progress_[last];
   active_.resize(last);
   squared_.resize(last);
-  exact_.resize(last);
-  seen_.resize(last);
+  progress_.resize(last);
 }
 
 }  // namespace goshawk::corridor_builder

@@ -40,9 +40,13 @@ class PolytopeInflation {
 
   std::vector<Plane> planes_;
   BoxSet active_;
-  std::vector<double> squared_;       // distance of each active box in the ellipsoid's metric, or
-  std::vector<unsigned char> exact_;  // where this is 0, a lower bound of it
-  std::vector<std::size_t> seen_;     // how many planes each active box was trimmed by
+  struct Progress {
+    Vec3 offset = Vec3::Zero();  // of the nearest point from the ellipsoid's centre, if exact
+    bool exact = false;          // else the distance is a lower bound
+    std::size_t seen = 0;        // by how many planes the box was trimmed
+  };
+  std::vector<double> squared_;  // distance of each active box in the ellipsoid's metric
+  std::vector<Progress> progress_;
   std::vector<unsigned char> keep_;
 };
 

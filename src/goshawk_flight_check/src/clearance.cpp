@@ -11,8 +11,6 @@ namespace {
 
 using Transform = fcl::Transform3<double>;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 Transform transform(const Pose& pose) {
   Transform T_map_base = Transform::Identity();
   T_map_base.linear() = pose.q_map_base.toRotationMatrix();

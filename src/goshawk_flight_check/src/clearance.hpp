@@ -11,6 +11,8 @@
 
 namespace goshawk::flight_check {
 
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
 struct Pose {
   Vec3 position_map = Vec3::Zero();
   Eigen::Quaterniond q_map_base = Eigen::Quaterniond::Identity();

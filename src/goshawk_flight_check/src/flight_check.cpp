@@ -30,7 +30,6 @@ Status check_gaps(std::span<const Sample> track) {
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kFarthest_m = 1e6;
 
 std::string sample_fault(const Sample& s, const Sample* previous) {

@@ -18,7 +18,7 @@ struct Field {
   std::size_t size = 4;    // [bytes] 4 or 8
 };
 
-struct Header {
+struct PcdHeader {
   std::array<Field, 3> xyz;
   std::size_t stride = 0;   // [bytes] of a point
   std::size_t columns = 0;  // [words] of a point
@@ -32,13 +32,13 @@ struct Lines {
   std::vector<std::string_view> fields, size, type, count, width, height, points;
 };
 
-Result<Header> layout(const Lines& lines) {
+Result<PcdHeader> layout(const Lines& lines) {
   const std::size_t n = lines.fields.size();
   if (n == 0 || lines.size.size() != n || lines.type.size() != n ||
       (!lines.count.empty() && lines.count.size() != n)) {
     return malformed("FIELDS, SIZE, TYPE and COUNT of the header do not agree");
   }
-  Header header;
+  PcdHeader header;
   std::array<bool, 3> found{};
   for (std::size_t i = 0; i < n; ++i) {
     const auto size = parse<std::uint32_t>(lines.size[i]);
@@ -78,7 +78,7 @@ Result<std::uint64_t> point_count(const Lines& lines) {
   return std::uint64_t{*width} * *height;
 }
 
-Result<Header> read_header(std::string_view bytes) {
+Result<PcdHeader> read_pcd_header(std::string_view bytes) {
   TextReader reader(bytes);
   Lines lines;
   while (!reader.done()) {
@@ -117,7 +117,7 @@ Result<Header> read_header(std::string_view bytes) {
   return malformed("the header has no DATA line: it is truncated, or no PCD file");
 }
 
-Error too_short(const Header& header, const std::string& what) {
+Error too_short(const PcdHeader& header, const std::string& what) {
   return malformed("the header promises " + std::to_string(header.points) + " points, but " + what +
                    ": the file is truncated");
 }
@@ -133,7 +133,7 @@ double load(const char* at, std::size_t size) {
   return double(value);
 }
 
-Result<Points> read_ascii(const Header& header) {
+Result<Points> read_ascii(const PcdHeader& header) {
   // A line takes two bytes a column: a claim that cannot be true is not even begun.
   if (header.points > header.data.size() / (2 * header.columns) + 1) {
     return too_short(header, "there is no room for them");
@@ -165,7 +165,7 @@ Result<Points> read_ascii(const Header& header) {
   return points;
 }
 
-Result<Points> read_binary(const Header& header) {
+Result<Points> read_binary(const PcdHeader& header) {
   if (header.points > header.data.size() / header.stride) {
     return too_short(header,
                      "there are bytes for " + std::to_string(header.data.size() / header.stride));
@@ -181,7 +181,7 @@ Result<Points> read_binary(const Header& header) {
 }
 
 // Two sizes, then LZF; inside, all values of the first field come first, then of the second.
-Result<Points> read_compressed(const Header& header) {
+Result<Points> read_compressed(const PcdHeader& header) {
   std::uint32_t sizes[2] = {0, 0};
   if (header.data.size() < sizeof sizes) return too_short(header, "the data end at once");
   std::memcpy(sizes, header.data.data(), sizeof sizes);
@@ -211,7 +211,7 @@ Result<Points> read_compressed(const Header& header) {
 }  // namespace
 
 Result<Points> read_pcd(std::string_view bytes) {
-  const auto header = read_header(bytes);
+  const auto header = read_pcd_header(bytes);
   if (!header) return header.error();
   if (header->encoding == "ascii") return read_ascii(*header);
   if (header->encoding == "binary") return read_binary(*header);

@@ -27,7 +27,7 @@ struct Element {
   std::vector<Property> properties;
 };
 
-struct Header {
+struct PlyHeader {
   Encoding encoding = Encoding::ascii;
   std::vector<Element> elements;
   std::string_view data;
@@ -69,10 +69,10 @@ std::optional<Property> read_property(const std::vector<std::string_view>& words
   return property;
 }
 
-Result<Header> read_header(std::string_view bytes) {
+Result<PlyHeader> read_ply_header(std::string_view bytes) {
   TextReader reader(bytes);
   if (reader.line() != "ply") return malformed("the first line is not 'ply': it is no PLY file");
-  Header header;
+  PlyHeader header;
   bool has_format = false;
   while (!reader.done()) {
     const auto words = split(reader.line());
@@ -182,7 +182,7 @@ bool has_xyz(const Element& element) {
 }  // namespace
 
 Result<Points> read_ply(std::string_view bytes) {
-  const auto header = read_header(bytes);
+  const auto header = read_ply_header(bytes);
   if (!header) return header.error();
   Values values(header->data, header->encoding);
   for (const Element& element : header->elements) {

@@ -134,7 +134,7 @@ Flown fly(const std::string& plant, const std::vector<std::string>& parameters) 
   const Stage tracker({"tracker", "--ros-args", "-p", "lock_step:=true"});
   const Stage simulator(plant_call);
   const auto begin = std::chrono::steady_clock::now();
-  EXPECT_TRUE(pilot.fly(60.0));
+  EXPECT_TRUE(pilot.fly(120.0));
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
   return {std::move(pilot.odometry), pilot.said, wall.count()};
 }

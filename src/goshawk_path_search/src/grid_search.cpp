@@ -9,6 +9,7 @@
 #include "goshawk/path_search/labels.hpp"
 #include "goshawk/path_search/move_cost.hpp"
 #include "goshawk/path_search/move_rules.hpp"
+#include "goshawk/path_search/neighbour_labels.hpp"
 #include "goshawk/path_search/obstacle_bits.hpp"
 #include "goshawk/path_search/successor_order.hpp"
 
@@ -23,6 +24,10 @@ constexpr int kExpansionsBetweenLooks = 1024;  // at the clock and the stop toke
 // when they were put off before.
 constexpr int kFewAtFirst = 1;
 constexpr int kFewLater = 8;
+
+// To look at the labels of all neighbours at once pays where most of them are known: not in a
+// search that ends soon.
+constexpr std::int64_t kExpansionsUnfiltered = 1024;
 
 // By direction_of().
 constexpr BlockMask kStraightMoves = 0x415410;
@@ -59,7 +64,10 @@ class GridSearch final : public GridPlanner {
   Status check(const GridQuery& query) const;
   void prepare(const GridQuery& query);
   Status run(const StopSignal& stop);
-  void expand(Node node, BlockMask moves);
+  void expand(Node node, Cost key);
+  [[gnu::noinline]] void expand_rest(Node node, BlockMask moves);
+  [[gnu::always_inline]] void make_moves(Node node, Index3 at, Label label, Cost key,
+                                         BlockMask moves, BlockMask block, int few);
   void expand_all(Node node, Index3 at, Label label, BlockMask moves, BlockMask block);
   void reach(Node node, Label label, Cost key);
   int jump(const Move& move, Index3 from, BlockMask block) const;
@@ -183,34 +191,55 @@ Status GridSearch<Heuristic, kJumps>::run(const StopSignal& stop) {
       if (auto status = stop.check(); !status) return status;
       left = kExpansionsBetweenLooks;
     }
-    expand(entry.node, entry.note);
+    if (expanded) {
+      expand_rest(entry.node, entry.note);
+    } else {
+      expand(entry.node, lowest + entry.rest);
+    }
   }
   return success();
 }
 
-// @param moves that were put off when the node was expanded; 0 where it is expanded now
+// @param key g + estimate of the node
 template <typename Heuristic, bool kJumps>
-void GridSearch<Heuristic, kJumps>::expand(Node node, BlockMask moves) {
-  const Label label = labels_[node];
+void GridSearch<Heuristic, kJumps>::expand(Node node, Cost key) {
+  Label& label = labels_[node];
+  label |= kExpanded;
+  ++counters_.expanded;
+  const BlockMask block = bits_.block(node);
+  BlockMask moves = kJumps ? rules_.successors(LabelTable::direction(label), block)
+                           : MoveRules::allowed(rule_, block);
+  if (counters_.expanded > kExpansionsUnfiltered)
+    moves &= improved_neighbours(labels_, bits_, node);
+  if (moves == 0) return;
   const Index3 at = bits_.index(node);
-  const BlockMask block = kJumps || moves == 0 ? bits_.block(node) : 0;
-  if (moves == 0) {
-    labels_[node] = label | kExpanded;
-    ++counters_.expanded;
-    moves = kJumps ? rules_.successors(LabelTable::direction(label), block)
-                   : MoveRules::allowed(rule_, block);
-  }
   if (!kOctile || goals_.size() > 1) return expand_all(node, at, label, moves, block);
+  make_moves(node, at, label, key, moves, block, kFewAtFirst);
+}
 
-  // With one goal and the octile estimate: the moves that raise the key least now, the others
-  // when their turn comes, unless they are so few that coming back costs more.
-  const SuccessorOrder::Case& order = order_.of(goal_.cell - at);
+// @param moves that were put off when the node was expanded
+template <typename Heuristic, bool kJumps>
+void GridSearch<Heuristic, kJumps>::expand_rest(Node node, BlockMask moves) {
+  const Label label = labels_[node];
+  moves &= improved_neighbours(labels_, bits_, node);
+  if (moves == 0) return;
+  const BlockMask block = kJumps ? bits_.block(node) : 0;
+  const Index3 at = bits_.index(node);
   const Cost key = labels_.cost(label) + OctileHeuristic{}(at, goal_.cell);
+  make_moves(node, at, label, key, moves, block, kFewLater);
+}
+
+// With one goal and the octile estimate: the moves that raise the key least now, the others when
+// their turn comes, unless they are so few that coming back costs more.
+template <typename Heuristic, bool kJumps>
+inline void GridSearch<Heuristic, kJumps>::make_moves(Node node, Index3 at, Label label, Cost key,
+                                                      BlockMask moves, BlockMask block, int few) {
+  const SuccessorOrder::Case& order = order_.of(goal_.cell - at);
   std::size_t level = 0;
   BlockMask now = moves & order.moves[0];
   while (now == 0 && level + 1 < SuccessorOrder::kLevels) now = moves & order.moves[++level];
   BlockMask later = moves & ~now;
-  if (at_most(level == 0 ? kFewAtFirst : kFewLater, later)) {
+  if (at_most(level == 0 ? few : kFewLater, later)) {
     now = moves;
   } else {
     do ++level;

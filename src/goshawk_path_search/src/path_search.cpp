@@ -4,7 +4,9 @@
 #include <cstdio>
 #include <utility>
 
+#include "goshawk/core/line_of_sight.hpp"
 #include "goshawk/path_search/reachable.hpp"
+#include "goshawk/path_search/relaxation.hpp"
 
 namespace goshawk::path_search {
 namespace {
@@ -166,6 +168,26 @@ Status PathSearch::search(const PlanQuery& query, PlannedPath& path) {
   return planner_->search(voxels, voxel_path_);
 }
 
+void PathSearch::relax(std::vector<Vec3>& waypoints_map) {
+  const GridGeometry& geometry = map_->geometry;
+  relaxed_grid_.clear();
+  for (const int k : kept_) relaxed_grid_.push_back(nodes_grid_[std::size_t(k)]);
+  if (pull_tight(map_->occupied, relaxed_grid_) == 0) return;
+  relaxed_map_.clear();
+  for (const Vec3& p : relaxed_grid_) {
+    relaxed_map_.push_back(geometry.origin_map + geometry.resolution_m * p);
+  }
+  relaxed_map_.front() = waypoints_map.front();
+  relaxed_map_.back() = waypoints_map.back();
+  // A leg that was free by less than the rounding of metres: the nodes themselves will do.
+  for (std::size_t i = 1; i < relaxed_map_.size(); ++i) {
+    const Vec3 &a = relaxed_grid_[i - 1], &b = relaxed_grid_[i];
+    const bool was_free = line_is_free(map_->occupied, a, b);
+    if (was_free && !line_is_free(*map_, relaxed_map_[i - 1], relaxed_map_[i])) return;
+  }
+  waypoints_map = relaxed_map_;
+}
+
 void PathSearch::fill(PlannedPath& path) {
   const GridGeometry& geometry = map_->geometry;
   const PlacedEnd& goal = goals_[voxel_path_.goal];
@@ -183,6 +205,7 @@ void PathSearch::fill(PlannedPath& path) {
   pruner_.prune(pruning_, map_->occupied, nodes_grid_, kept_);
   path.waypoints_map.clear();
   for (const int k : kept_) path.waypoints_map.push_back(path.raw_map[std::size_t(k)]);
+  if (pruning_ == Pruning::relaxed) relax(path.waypoints_map);
   path.raw_length_m = polyline_length(path.raw_map);
   path.pruned_length_m = polyline_length(path.waypoints_map);
   path.cost = voxel_path_.cost_voxels * geometry.resolution_m;

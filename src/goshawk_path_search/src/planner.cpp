@@ -106,9 +106,11 @@ Result<std::unique_ptr<GridPlanner>> make_planner(const Config& config, double r
   if (!rule) return rule.error();
   const Weights weights = weights_of(config, resolution_m);
   if (!weights.plain()) return make_weighted(config, *rule, weights);
-  const SamplingOptions sampling{.max_iterations = config.max_iterations,
-                                 .step_voxels = config.step_m / resolution_m,
-                                 .seed = std::uint64_t(config.seed)};
+  const SamplingOptions sampling{
+      .max_iterations = config.max_iterations,
+      .step_voxels = config.step_m / resolution_m,
+      .seed = std::uint64_t(config.seed),
+      .validity = config.validity == "fcl" ? Validity::fcl : Validity::grid};
   const std::string_view name = config.planner;
   if (name == "rrt") return make_sampling_search(SamplingMethod::rrt, sampling);
   if (name == "rrtstar") return make_sampling_search(SamplingMethod::rrtstar, sampling);

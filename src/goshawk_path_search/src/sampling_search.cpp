@@ -12,8 +12,8 @@
 #include <ompl/geometric/planners/rrt/RRTstar.h>
 #include <ompl/util/Console.h>
 
-#include "goshawk/core/line_of_sight.hpp"
 #include "goshawk/core/random.hpp"
+#include "goshawk/path_search/segment_validity.hpp"
 
 namespace goshawk::path_search {
 namespace {
@@ -54,10 +54,10 @@ class GridSampler final : public ob::StateSampler {
 
 class LineOfSight final : public ob::MotionValidator {
  public:
-  LineOfSight(const ob::SpaceInformationPtr& space, const BitGrid& blocked)
-      : ob::MotionValidator(space), blocked_(blocked) {}
+  LineOfSight(const ob::SpaceInformationPtr& space, const SegmentValidity& validity)
+      : ob::MotionValidator(space), validity_(validity) {}
   bool checkMotion(const ob::State* a, const ob::State* b) const override {
-    return line_is_free(blocked_, point_of(a), point_of(b));
+    return validity_.is_free(point_of(a), point_of(b));
   }
   // Only asked for where the last valid state matters: nowhere here.
   bool checkMotion(const ob::State* a, const ob::State* b,
@@ -68,7 +68,7 @@ class LineOfSight final : public ob::MotionValidator {
   }
 
  private:
-  const BitGrid& blocked_;
+  const SegmentValidity& validity_;
 };
 
 struct SeededRrt final : og::RRT {
@@ -124,7 +124,7 @@ class SamplingSearch final : public GridPlanner {
            : method_ == SamplingMethod::rrtstar ? "rrtstar"
                                                 : "prm";
   }
-  void set_map(const BitGrid& blocked, const BitGrid*) override { blocked_ = blocked; }
+  void set_map(const BitGrid& blocked, const BitGrid*) override;
   Status search(const GridQuery& query, VoxelPath& path) override;
 
  private:
@@ -138,7 +138,14 @@ class SamplingSearch final : public GridPlanner {
   SamplingMethod method_;
   SamplingOptions options_;
   BitGrid blocked_;
+  std::unique_ptr<SegmentValidity> validity_;  // of blocked_
 };
+
+void SamplingSearch::set_map(const BitGrid& blocked, const BitGrid*) {
+  blocked_ = blocked;
+  validity_ = options_.validity == Validity::fcl ? make_fcl_validity(blocked_)
+                                                 : make_grid_validity(blocked_);
+}
 
 ob::SpaceInformationPtr SamplingSearch::make_space() const {
   auto space = std::make_shared<Space>(3);
@@ -152,9 +159,9 @@ ob::SpaceInformationPtr SamplingSearch::make_space() const {
   auto information = std::make_shared<ob::SpaceInformation>(space);
   information->setStateValidityChecker([this](const ob::State* state) {
     const Vec3 p = point_of(state);
-    return line_is_free(blocked_, p, p);
+    return validity_->is_free(p, p);
   });
-  information->setMotionValidator(std::make_shared<LineOfSight>(information, blocked_));
+  information->setMotionValidator(std::make_shared<LineOfSight>(information, *validity_));
   information->setup();
   return information;
 }
@@ -192,7 +199,7 @@ ob::ProblemDefinitionPtr SamplingSearch::make_problem(const ob::SpaceInformation
 Status SamplingSearch::direct(const GridQuery& query, VoxelPath& path) const {
   for (std::size_t k = 0; k < query.goals.size(); ++k) {
     const Vec3 &a = query.start.at_grid, &b = query.goals[k].at_grid;
-    if (!line_is_free(blocked_, a, b)) continue;
+    if (!validity_->is_free(a, b)) continue;
     const double length = (b - a).norm();
     if (!path.points.empty() && length >= path.cost_voxels) continue;
     path.points = {a, b};

@@ -11,14 +11,8 @@
 namespace goshawk::path_search {
 namespace {
 
+using reference::grid_of;
 using reference::Random;
-
-std::shared_ptr<VoxelGrid> grid_of(BitGrid blocked) {
-  auto grid = std::make_shared<VoxelGrid>();
-  grid->geometry = {Vec3(-1.0, 2.0, 0.5), 0.2, blocked.size()};
-  grid->occupied = std::move(blocked);
-  return grid;
-}
 
 PathSearch stage(const Config& config = {}) {
   return std::move(PathSearch::create(config)).value();
@@ -152,7 +146,7 @@ TEST(Config, OffersOnlyWordsThatItTakes) {
       }
     }
   });
-  EXPECT_EQ(words_seen, 8 + 2 + 3 + 4);
+  EXPECT_EQ(words_seen, 8 + 2 + 4 + 4 + 2);
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ std::unique_ptr<GridPlanner> planner_of(const std::string& name, const std::stri
   return std::move(make_planner(config)).value();
 }
 
-const std::vector<std::string> kRules = {"no_squeeze", "squeeze"};
+const std::vector<std::string> kRuleNames = {"no_squeeze", "squeeze"};
 const std::vector<std::string> kExact = {"jastar", "astar", "astar_euclidean", "dijkstra"};
 
 // Compares planners with the truth on one map, for a few goals.
@@ -51,7 +51,7 @@ void expect_truth(std::vector<std::unique_ptr<GridPlanner>>& planners, const Bit
 
 // Three goals a map: 102,000 queries of JA* and A*, a tenth of them of the others.
 TEST(Planners, FindTheDijkstraLengthOnEveryRandomMap) {
-  for (const auto& rule : kRules) {
+  for (const auto& rule : kRuleNames) {
     std::vector<std::unique_ptr<GridPlanner>> best, all;
     for (const auto* name : {"jastar", "astar"}) best.push_back(planner_of(name, rule));
     for (const auto& name : kExact) all.push_back(planner_of(name, rule));
@@ -66,7 +66,7 @@ TEST(Planners, FindTheDijkstraLengthOnEveryRandomMap) {
 }
 
 TEST(JaStar, FindsTheDijkstraLengthOnLargerMaps) {
-  for (const auto& rule : kRules) {
+  for (const auto& rule : kRuleNames) {
     std::vector<std::unique_ptr<GridPlanner>> planners;
     planners.push_back(planner_of("jastar", rule));
     Random random(2);
@@ -82,7 +82,7 @@ TEST(JaStar, FindsTheDijkstraLengthOnLargerMaps) {
 }
 
 TEST(Planners, CrossAnEmptyMapInAStraightLine) {
-  for (const auto& rule : kRules) {
+  for (const auto& rule : kRuleNames) {
     for (const auto& name : kExact) {
       const auto planner = planner_of(name, rule);
       planner->set_map(BitGrid({200, 3, 2}, true));

@@ -2,10 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "goshawk/core/line_of_sight.hpp"
+#include "goshawk/path_search/path_search.hpp"
 #include "goshawk/path_search/planner.hpp"
+#include "goshawk/path_search/relaxation.hpp"
 #include "reference.hpp"
 
 namespace goshawk::path_search {
@@ -133,6 +137,83 @@ TEST(Pruning, BoundsItsWorkOnLongPaths) {
   EXPECT_EQ(kept.size(), 61U);
 }
 
+double length(const std::vector<Vec3>& points) {
+  return length(points, all_of(points));
+}
+
+// Free, the same ends, never longer; only a move of the raw path (squeeze) may be what it was.
+TEST(Relaxing, ShortensAndStaysFree) {
+  for (const std::string rule : {"no_squeeze", "squeeze"}) {
+    Random random(12);
+    PathPruner pruner;
+    int shorter = 0;
+    for (int n = 0; n < 800; ++n) {
+      const BitGrid map = n % 2 == 0
+                              ? reference::any_map(random)
+                              : reference::box_map({30, 30, 8}, random.uniform(0.1, 0.4), random);
+      const auto nodes = random_path(map, rule, random);
+      if (nodes.empty()) continue;
+      std::vector<int> kept;
+      pruner.prune(Pruning::relaxed, map, nodes, kept);
+      std::vector<Vec3> before;
+      for (const int k : kept) before.push_back(nodes[std::size_t(k)]);
+      std::vector<Vec3> after = before;
+      const int changes = pull_tight(map, after);
+      ASSERT_EQ(after.front(), before.front());
+      ASSERT_EQ(after.back(), before.back());
+      ASSERT_LE(after.size(), before.size());
+      ASSERT_LE(length(after), length(before)) << "map " << n;
+      ASSERT_EQ(changes == 0, after == before);
+      shorter += length(after) < length(before) - 1e-3;
+      for (std::size_t i = 1; i < after.size(); ++i) {
+        if (line_is_free(map, after[i - 1], after[i])) continue;
+        const auto from = std::ranges::find(nodes, after[i - 1]);
+        ASSERT_TRUE(rule == "squeeze" && from != nodes.end() && *(from + 1) == after[i])
+            << "map " << n << ", leg " << i;
+      }
+    }
+    EXPECT_GT(shorter, 100) << rule;
+  }
+}
+
+// The taut line round the edges of a wall is known.
+TEST(Relaxing, TouchesTheCornerOfAWall) {
+  BitGrid map({21, 21, 1}, true);
+  for (int y = 0; y <= 10; ++y) map.set({10, y, 0}, true);
+  std::vector<Vec3> points = {
+      {4.5, 4.5, 0.5}, {9.5, 12.5, 0.5}, {12.5, 12.5, 0.5}, {16.5, 4.5, 0.5}};
+  EXPECT_GT(pull_tight(map, points), 0);
+  const double taut = 2.0 * std::hypot(10.0 - 4.5, 11.0 - 4.5) + 1.0;
+  EXPECT_GT(length(points), taut);
+  EXPECT_LT(length(points), taut * 1.02);
+}
+
+TEST(Relaxing, InTheStageIsNoLongerThanShortestAndFreeInMetres) {
+  Random random(13);
+  Config shortest, relaxed;
+  relaxed.pruning = "relaxed";
+  auto one = std::move(PathSearch::create(shortest)).value();
+  auto other = std::move(PathSearch::create(relaxed)).value();
+  for (int n = 0; n < 150; ++n) {
+    auto grid = std::make_shared<VoxelGrid>();
+    grid->occupied = reference::box_map({30, 30, 8}, 0.3, random);
+    grid->geometry = {Vec3(-1.37, 2.11, 0.53), 0.17, grid->occupied.size()};
+    one.set_map(grid);
+    other.set_map(grid);
+    const Vec3 s = grid->geometry.center(reference::free_voxel(grid->occupied, random));
+    const Vec3 g = grid->geometry.center(reference::free_voxel(grid->occupied, random));
+    const auto a = one.plan(s, g), b = other.plan(s, g);
+    ASSERT_EQ(a.code(), b.code());
+    if (!a.ok()) continue;
+    ASSERT_LE(b->pruned_length_m, a->pruned_length_m * (1.0 + 1e-12));
+    ASSERT_EQ(b->waypoints_map.front(), s);
+    ASSERT_EQ(b->waypoints_map.back(), g);
+    for (std::size_t i = 1; i < b->waypoints_map.size(); ++i) {
+      ASSERT_TRUE(line_is_free(*grid, b->waypoints_map[i - 1], b->waypoints_map[i])) << n;
+    }
+  }
+}
+
 TEST(Pruning, CorrectsAlgorithmTwoAtTheEnd) {
   // The view from the start is cut at the last node only: the node before it must stay.
   BitGrid map({4, 2, 1}, true);
@@ -158,6 +239,9 @@ TEST(Pruning, AcceptsPathsWithoutAnythingToPrune) {
     pruner.prune(pruning, map, one, kept);
     EXPECT_EQ(kept, std::vector<int>{0});
   }
+  std::vector<Vec3> none, two = {{0.5, 0.5, 0.5}, {1.5, 1.5, 1.5}};
+  EXPECT_EQ(pull_tight(map, none), 0);
+  EXPECT_EQ(pull_tight(map, two), 0);
   EXPECT_EQ(parse_pruning("some").code(), ErrorCode::invalid_parameter);
 }
 

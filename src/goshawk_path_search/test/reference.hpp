@@ -1,10 +1,12 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "goshawk/core/bit_grid.hpp"
+#include "goshawk/core/grid_geometry.hpp"
 #include "goshawk/core/random.hpp"
 
 // An independent truth for the search tests: shares no code with the library but BitGrid, and
@@ -41,6 +43,8 @@ BitGrid box_map(Index3 size, double ratio, Random& random);
 Index3 odd_size(Random& random);
 /// A random map of a random shape, kind and density.
 BitGrid any_map(Random& random);
+/// A map of voxels of 0.2 m whose corner is (-1, 2, 0.5).
+std::shared_ptr<goshawk::VoxelGrid> grid_of(BitGrid blocked);
 /// A free voxel, or the last one drawn if the map has few.
 Index3 free_voxel(const BitGrid& blocked, Random& random);
 

@@ -81,7 +81,7 @@ class Container {
 
 void expect_fault(const Words& arguments, const testing::Matcher<const std::string&>& sentence) {
   Container container(arguments);
-  EXPECT_EQ(container.wait(10.0), 2);
+  EXPECT_EQ(container.wait(60.0), 2);
   EXPECT_THAT(container.log(), sentence);
 }
 
@@ -153,14 +153,14 @@ TEST_F(Containers, RunTheirComponentsAndEndOnSignals) {
     }
     EXPECT_THAT(nodes, Contains("/uav1/second"));
     container.send(signal);
-    EXPECT_EQ(container.wait(2.0), 0) << container.log();
+    EXPECT_EQ(container.wait(60.0), 0) << container.log();
   }
 }
 
 TEST_F(Containers, EndOnASignalThatComesEarly) {
   Container container({"probe"});
   container.send(SIGTERM);
-  const int status = container.wait(2.0);
+  const int status = container.wait(60.0);
   // Before main() blocks the signal, the default action ends the process just as well.
   EXPECT_TRUE(status == 0 || status == -SIGTERM) << status;
 }
@@ -182,14 +182,14 @@ TEST_F(Containers, GetLatchedTopicsAgainAfterAKill) {
       return poked >= life;
     }));
     container.send(SIGKILL);
-    EXPECT_EQ(container.wait(2.0), -SIGKILL);
+    EXPECT_EQ(container.wait(60.0), -SIGKILL);
     poked = life;
   }
 }
 
 TEST_F(Containers, DieOfABugSoThatSupervisionSeesIt) {
   Container container({"probe", "--ros-args", "-p", "label:=throw"});
-  EXPECT_EQ(container.wait(10.0), -SIGABRT);
+  EXPECT_EQ(container.wait(60.0), -SIGABRT);
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ inline std::unique_ptr<runtime::Context> join(std::vector<std::string> node_name
 
 /// Serves the node until done(), for at most `most_s`. @return done()
 template <typename Done>
-bool spin_until(runtime::Node& node, const Done& done, double most_s = 10.0) {
+bool spin_until(runtime::Node& node, const Done& done, double most_s = 60.0) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(most_s);
   while (!done() && std::chrono::steady_clock::now() < end) node.spin_some(0.02);
   return done();

@@ -51,7 +51,7 @@ TEST(RosArgs, NamesTheNode) {
   EXPECT_EQ(parse({"--log-level", "debug"}).log_level, "debug");
 }
 
-std::string fault(Words words) {
+std::string fault_of(Words words) {
   words.insert(words.begin(), "--ros-args");
   const auto args = RosArgs::extract(words);
   EXPECT_EQ(args.code(), ErrorCode::invalid_input);
@@ -59,14 +59,14 @@ std::string fault(Words words) {
 }
 
 TEST(RosArgs, NamesTheArgumentThatIsWrong) {
-  EXPECT_THAT(fault({"-x", "1"}), HasSubstr("'-x' is no option"));
-  EXPECT_THAT(fault({"-r"}), HasSubstr("'-r' wants a value"));
-  EXPECT_THAT(fault({"-r", "a=b"}), HasSubstr("'a=b' is not of the form name:=value"));
-  EXPECT_THAT(fault({"-p", ":=1"}), HasSubstr("name:=value"));
-  EXPECT_THAT(fault({"-r", "a:=b c"}), HasSubstr("'b c' is not a name"));
-  EXPECT_THAT(fault({"-r", "__ns:=/a//b"}), HasSubstr("is not a name"));
-  EXPECT_THAT(fault({"-r", "__node:=a/b"}), HasSubstr("__ns"));
-  EXPECT_THAT(fault({"--log-level", "loud"}), HasSubstr("'loud'"));
+  EXPECT_THAT(fault_of({"-x", "1"}), HasSubstr("'-x' is no option"));
+  EXPECT_THAT(fault_of({"-r"}), HasSubstr("'-r' wants a value"));
+  EXPECT_THAT(fault_of({"-r", "a=b"}), HasSubstr("'a=b' is not of the form name:=value"));
+  EXPECT_THAT(fault_of({"-p", ":=1"}), HasSubstr("name:=value"));
+  EXPECT_THAT(fault_of({"-r", "a:=b c"}), HasSubstr("'b c' is not a name"));
+  EXPECT_THAT(fault_of({"-r", "__ns:=/a//b"}), HasSubstr("is not a name"));
+  EXPECT_THAT(fault_of({"-r", "__node:=a/b"}), HasSubstr("__ns"));
+  EXPECT_THAT(fault_of({"--log-level", "loud"}), HasSubstr("'loud'"));
 }
 
 TEST(TopicNames, FollowTheRulesOfRos) {

@@ -52,6 +52,7 @@ Quadrotor::Quadrotor(const Config& config, const PlantFactory& make_plant)
       wind_(wind_of(config), kStep_s),
       sensor_(config.sensor, kStep_ns),
       hold_(config.vehicle, config.failsafe_tilt_rad),
+      guard_(config.landing, config.land_height_m),
       command_timeout_ns_(std::llround(config.command_timeout_s * 1e9)),
       landing_ns_(command_timeout_ns_ + std::llround(config.failsafe_hold_s * 1e9)) {
   if (!reset(Vec3::Zero(), 0.0)) throw std::logic_error("a quadrotor cannot hover at the origin");
@@ -73,6 +74,7 @@ Status Quadrotor::reset(const Vec3& position_map, double yaw_rad) {
   sensor_.reset(state.body, time_ns_);
   hold_.engage_at(position_map, yaw_rad);
   control_ = Control::failsafe;
+  not_landing_ = {ErrorCode::ok, ""};
   was_commanded_ = false;
   remainder_ns_ = 0;
   return success();
@@ -84,6 +86,7 @@ Status Quadrotor::command(const ThrustAttitude& command) {
   command_.q_map_base.normalize();
   command_time_ns_ = time_ns_;
   control_ = Control::commanded;
+  not_landing_ = {ErrorCode::ok, ""};
   was_commanded_ = true;
   return success();
 }
@@ -130,9 +133,31 @@ void Quadrotor::watch_commands() {
     hold_.engage(state());
   }
   if (control_ == Control::failsafe && was_commanded_ && !hold_.braking() &&
-      silent_ns >= landing_ns_) {
-    control_ = Control::landing;
+      silent_ns >= landing_ns_ && not_landing_.code == ErrorCode::ok) {
+    try_to_land();
   }
+}
+
+// Once: the answer stays until another map comes. Looks below the vehicle, not below the place
+// where it should be: wind keeps it beside that all the way down.
+void Quadrotor::try_to_land() {
+  const Status answer = guard_.check(state().position_map);
+  if (answer) {
+    control_ = Control::landing;
+  } else {
+    not_landing_ = answer.error();
+  }
+}
+
+void Quadrotor::set_map(std::shared_ptr<const VoxelGrid> grid) {
+  guard_.set_map(std::move(grid));
+  not_landing_ = {ErrorCode::ok, ""};
+  const bool is_down = hold_.position_map().z() <= config_.land_height_m;
+  if (control_ != Control::landing || is_down) return;
+  try_to_land();
+  if (not_landing_.code == ErrorCode::ok) return;
+  control_ = Control::failsafe;
+  hold_.engage(state());
 }
 
 }  // namespace goshawk::simulator

@@ -23,7 +23,7 @@ TEST(Config, NamesAreUniqueAndValuesCanBeWritten) {
   describe(config, [&](const char* name, auto& value, const char*, const char* text, const auto&) {
     EXPECT_TRUE(names.insert(name).second) << name;
     EXPECT_FALSE(std::string(text).empty()) << name;
-    value = std::remove_reference_t<decltype(value)>(3);
+    if constexpr (std::is_arithmetic_v<std::remove_reference_t<decltype(value)>>) value = 3;
   });
   EXPECT_EQ(config.vehicle.mass_kg, 3.0);
   EXPECT_EQ(config.gust_seed, 3);

@@ -241,6 +241,7 @@ TEST(Quadrotor, HoldsItsPositionByItselfInAModerateWind) {
 TEST(Quadrotor, WithoutCommandsItHoldsThenLandsStraightDown) {
   Config config;
   config.failsafe_hold_s = 3.0;
+  config.landing = "anywhere";
   auto quadrotor = make(config);
   ASSERT_TRUE(quadrotor.reset({1, 2, 1.5}, 0.0));
   advance(quadrotor, 20.0);
@@ -259,6 +260,55 @@ TEST(Quadrotor, WithoutCommandsItHoldsThenLandsStraightDown) {
   EXPECT_NEAR(quadrotor.state().position_map.z(), config.land_height_m, 0.01);
   ASSERT_TRUE(quadrotor.command(hover(quadrotor)));  // whoever commands again, has it again
   EXPECT_EQ(quadrotor.control(), Control::commanded);
+}
+
+// 3 x 3 x 3 m of 0.1 m with something wide, whose top is at table_m; 0: an empty room.
+std::shared_ptr<VoxelGrid> room(double table_m) {
+  auto grid = std::make_shared<VoxelGrid>();
+  grid->geometry = {.origin_map = Vec3::Zero(), .resolution_m = 0.1, .size = {30, 30, 30}};
+  grid->occupied = BitGrid(grid->geometry.size, true);
+  for (int z = 0; 0.1 * z < table_m - 0.05; ++z) {
+    for (int y = 0; y < 30; ++y) grid->occupied.set_run(5, 20, y, z, true);
+  }
+  return grid;
+}
+
+TEST(Quadrotor, LandsOnlyWhereTheMapShowsTheWayDownFree) {
+  Config config;
+  config.failsafe_hold_s = 1.0;
+  auto quadrotor = make(config);
+  ASSERT_TRUE(quadrotor.reset({1.03, 2, 1.5}, 0.0));
+  EXPECT_FALSE(quadrotor.needs_map());
+  ASSERT_TRUE(quadrotor.command(hover(quadrotor)));
+  advance(quadrotor, 0.2);
+  EXPECT_TRUE(quadrotor.needs_map());
+  const auto holds_because = [&](ErrorCode code, double height_m) {
+    EXPECT_EQ(quadrotor.control(), Control::failsafe);
+    EXPECT_EQ(quadrotor.not_landing().code, code) << quadrotor.not_landing().message;
+    EXPECT_NEAR(quadrotor.state().position_map.z(), height_m, 0.05);
+  };
+  advance(quadrotor, 5.0);
+  holds_because(ErrorCode::no_map, 1.5);
+  quadrotor.set_map(room(0.7));
+  EXPECT_FALSE(quadrotor.needs_map());
+  advance(quadrotor, 5.0);
+  holds_because(ErrorCode::goal_occupied, 1.5);
+
+  quadrotor.set_map(room(0.0));
+  advance(quadrotor, 2.0);
+  EXPECT_EQ(quadrotor.control(), Control::landing);
+  EXPECT_EQ(quadrotor.not_landing().code, ErrorCode::ok);
+  const double height = quadrotor.state().position_map.z();
+  EXPECT_LT(height, 1.3);
+  quadrotor.set_map(room(0.4));  // someone pushes a table below it
+  advance(quadrotor, 5.0);
+  holds_because(ErrorCode::goal_occupied, height);
+
+  quadrotor.set_map(room(0.0));
+  advance(quadrotor, 10.0);
+  EXPECT_NEAR(quadrotor.state().position_map.z(), config.land_height_m, 0.01);
+  quadrotor.set_map(room(1.0));  // down is down
+  EXPECT_EQ(quadrotor.control(), Control::landing);
 }
 
 }  // namespace

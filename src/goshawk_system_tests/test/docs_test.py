@@ -6,6 +6,7 @@ import shlex
 
 import harness
 from harness import SOURCE, SystemTest, note
+from stack import Stack
 
 PAGES = [SOURCE / "README.md", *sorted((SOURCE / "docs").glob("*.md"))]
 # What runs until it is stopped: it must live this long.
@@ -106,7 +107,7 @@ class Commands(SystemTest):
         return None
 
     def test_every_command_line_of_the_pages(self):
-        harness.Stack(self.sandbox).wait_ready()
+        Stack(self.sandbox).wait_ready()
         lines = {line: (page.name, exports) for page in PAGES
                  for line, exports in command_lines(page)
                  if "my_map" not in line and "/path/to" not in line}

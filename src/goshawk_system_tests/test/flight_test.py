@@ -9,6 +9,7 @@ import struct
 import harness
 import second_opinion
 from harness import SystemTest, note
+from stack import spawned
 
 STAGE_KEYS = {"name", "implementation", "code", "compute_us", "wire_us", "counters"}
 LEG_KEYS = {"goal", "arrived", "code", "message", "flight_time_s", "request_id", "stages", "path",
@@ -134,7 +135,7 @@ class ContainerFlight(FlightCase):
         self.assertEqual([leg["goal"] for leg in flight["legs"]], [[3.5, 6.1, 1.1], [3, 8, 2]])
         self.check_files(folder, flight)
         self.check_tables(folder, flight)
-        self.assertEqual(set(harness.spawned(folder / "logs")), {"container"})
+        self.assertEqual(set(spawned(folder / "logs")), {"container"})
 
 
 class RealMapFlight(FlightCase):

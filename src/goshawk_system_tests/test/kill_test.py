@@ -8,7 +8,8 @@ import time
 
 import harness
 import second_opinion
-from harness import GOSHAWK, StackTest, SystemTest, note, until
+from harness import GOSHAWK, SystemTest, note, until
+from stack import Launch, StackTest
 
 # Free places of the default world, far from each other.
 PLACES = [(3.0, 0.0, 1.0), (3.0, 8.0, 2.0)]
@@ -140,7 +141,7 @@ class LaunchEnds(SystemTest):
     def launch_running(self):
         world = self.sandbox.folder / "world.bt"
         self.assertEqual(self.sandbox.goshawk("world", world).status, 0)
-        launch = harness.Launch(self.sandbox, "flight", "-p", f"map_server:map_file:={world}")
+        launch = Launch(self.sandbox, "flight", "-p", f"map_server:map_file:={world}")
         self.assertTrue(until(lambda: len(launch.events("running")) == len(harness.STAGES),
                               20.0), launch.tails())
         return launch
@@ -151,7 +152,7 @@ class LaunchEnds(SystemTest):
         status, seconds = launch.process.stop(number)
         note(f"stopped by {number.name} in {seconds:.2f} s")
         self.assertEqual(status, 0, launch.tails())
-        self.assertLess(seconds, 6.0)
+        self.assertNotIn("SIGKILL", launch.supervisor_log())
         self.assertEqual(launch.events()[-1]["event"], "stopped")
         for pid in pids.values():
             self.assertFalse(os.path.exists(f"/proc/{pid}"))
@@ -219,7 +220,7 @@ class LaunchFails(SystemTest):
             path = self.sandbox.folder / f"{name}.yaml"
             path.write_text("stages:\n  - component: corridor_builder\n"
                             f"  - command: {command}\n    name: {name}\n")
-            launches.append(harness.Launch(self.sandbox, path))
+            launches.append(Launch(self.sandbox, path))
         for name, launch in zip(files, launches):
             status = launch.process.wait(60.0)
             self.assertEqual(status, 1, launch.tails())
@@ -269,7 +270,7 @@ class LaunchFails(SystemTest):
         (self.sandbox.folder / "flight").mkdir()
         world = self.sandbox.folder / "world.bt"
         self.assertEqual(self.sandbox.goshawk("world", world).status, 0)
-        launch = harness.Launch(self.sandbox, "flight", "-p", f"map_server:map_file:={world}")
+        launch = Launch(self.sandbox, "flight", "-p", f"map_server:map_file:={world}")
         self.assertTrue(until(lambda: launch.events("running"), 15.0), launch.tails())
 
     def test_bytes_that_are_no_text(self):

@@ -41,7 +41,8 @@ class MapCase(SystemTest):
         self.assertEqual(outcome.status, 0, str(outcome))
 
     def echo(self, topic, *options):
-        return self.sandbox.start(GOSHAWK, "topic", "echo", topic, "--json", *options)
+        return self.sandbox.start(GOSHAWK, "topic", "echo", topic, "--json", "--timeout", "60",
+                                  *options)
 
     def wait_line(self, process, condition=lambda _: True, timeout_s=20.0):
         found = until(lambda: next((m for m in process.lines() if condition(m)), None), timeout_s)

@@ -4,7 +4,8 @@
 import json
 
 import harness
-from harness import StackTest, SystemTest, note
+from harness import SystemTest, note
+from stack import StackTest
 
 
 class CycloneSearch(SystemTest):

@@ -9,7 +9,9 @@ import shutil
 import socket
 
 import harness
-from harness import GOSHAWK, SOURCE, StackTest, SystemTest, note, until
+from harness import GOSHAWK, PREFIX, SOURCE, SystemTest, note, until
+from map_test import MapCase, cloud, odometry
+from stack import StackTest
 
 SCRIPTS = SOURCE / "src/goshawk_viewer/test"
 
@@ -27,11 +29,30 @@ def browser_environment(test):
     return {"GOSHAWK_NODE_MODULES": str(modules.resolve()), "GOSHAWK_CHROMIUM": str(chromium)}
 
 
+def studio_environment(test):
+    """The same with Foxglove Studio, which npm brings."""
+    environment = browser_environment(test)
+    modules = pathlib.Path(environment["GOSHAWK_NODE_MODULES"])
+    for name in ("@foxglove/studio-base", "react", "react-dom"):
+        if not (modules / name).is_dir():
+            test.skipTest(f"Foxglove Studio is not looked at without {name} in {modules}: run "
+                          "tools/setup --tests")
+    return environment
+
+
 def look(test, script, *arguments):
-    outcome = test.sandbox.call("node", SCRIPTS / script, *arguments, timeout_s=90,
+    outcome = test.sandbox.call("node", SCRIPTS / script, *arguments, timeout_s=150,
                                 env=browser_environment(test))
     test.assertEqual(outcome.status, 0, str(outcome))
     note(outcome.out.strip().replace("\n", "\n    "))
+
+
+def page_data(page):
+    """What a page draws, from the page."""
+    text = page.read_text(encoding="utf-8")
+    mark = '<script type="application/json" id="flight">'
+    begin = text.index(mark) + len(mark)
+    return json.loads(text[begin:text.index("</script>", begin)])
 
 
 def free_port():
@@ -52,6 +73,54 @@ class FlightPage(SystemTest):
         for outside in ('src="http', "src='http", '@import', 'href="http'):
             self.assertNotIn(outside, page)
         look(self, "flight_page_test.mjs", folder / "flight.html")
+        self.recording_shows_the_same(folder)
+        self.studio_shows_the_recording(folder)
+
+    def recording_shows_the_same(self, folder):
+        """The page that is made from the recording alone has what the flight's own page has."""
+        page = self.sandbox.folder / "recording.html"
+        made = self.sandbox.call(PREFIX / "lib/goshawk/recording_page", folder / "flight.mcap",
+                                 PREFIX / "share/goshawk/viewer/page.html", page)
+        self.assertEqual((made.status, made.err), (0, ""), str(made))
+        live, later = (page_data(p) for p in (folder / "flight.html", page))
+        self.assertEqual(len(live["legs"]), len(later["legs"]))
+        for of_flight, of_recording in zip(live["legs"], later["legs"]):
+            for part in ("waypoints", "raw", "pieces", "corridor"):
+                self.assertEqual(of_flight[part], of_recording[part], part)
+        for part in ("obstacles", "grown"):
+            self.assertGreater(len(later[part]["runs"]), 100, part)
+        self.assertGreater(len(later["flown"]["t"]), 50)
+        self.assertLess(math.dist(live["flown"]["p"][-3:], later["flown"]["p"][-3:]), 0.1)
+
+    def studio_shows_the_recording(self, folder):
+        with self.subTest("Foxglove Studio"):
+            environment = studio_environment(self)
+            view = self.sandbox.start(GOSHAWK, "view", "--foxglove", folder, "--port", "0",
+                                      "--no-open", "--json", env=environment)
+            shown = until(view.lines, 60.0)
+            self.assertTrue(shown and shown[0]["ok"], str(view.outcome()))
+            look(self, "studio_page_test.mjs", shown[0]["url"], "recording")
+            self.assertEqual(view.stop()[0], 0, str(view.outcome()))
+
+    def test_view_of_recordings_that_are_none_or_cut_off(self):
+        sample = self.sandbox.folder / "plan.mcap"
+        foreign = self.sandbox.folder / "foreign.mcap"
+        foreign.write_bytes(b"not a recording" * 100)
+        folder = self.sandbox.folder / "plan"
+        folder.mkdir()
+        for what, sentence in [(foreign, "is no MCAP recording"), (sample, "cannot be read"),
+                               (folder, "is it a flight folder, or a recording?")]:
+            with self.subTest(what=what.name):
+                outcome = self.sandbox.goshawk("view", what, "--check")
+                self.assert_civil(outcome)
+                self.assertEqual(outcome.status, 2, str(outcome))
+                self.assertIn(sentence, outcome.err)
+
+    def test_without_the_studio_view_says_how_to_get_it(self):
+        outcome = self.sandbox.goshawk("view", "--foxglove", "--live", "--no-open",
+                                       env={"GOSHAWK_NODE_MODULES": "/nowhere"})
+        self.assertEqual(outcome.status, 1, str(outcome))
+        self.assertIn("tools/setup --viewer", outcome.err)
 
     def test_a_plan_leaves_one_too(self):
         folder = self.sandbox.folder / "plan"
@@ -61,7 +130,7 @@ class FlightPage(SystemTest):
 
     def test_view_says_what_is_wrong(self):
         for arguments, status, sentence in [
-                (["/nowhere"], 2, "is it a flight folder?"), ([], 2, "no flight in ./flights"),
+                (["/nowhere"], 2, "is it a flight folder"), ([], 2, "no flight in ./flights"),
                 (["x", "--live"], 2, "one of them"), (["--port", "70000"], 2, "65535"),
                 (["--live", "--bridge", "http://x"], 2, "ws://127.0.0.1:8765")]:
             with self.subTest(arguments=arguments):
@@ -80,6 +149,26 @@ class FlightPage(SystemTest):
             outcome = self.sandbox.goshawk("view", folder, "--no-open", "--port", port)
         self.assertEqual(outcome.status, 1, str(outcome))
         self.assertIn(f"port {port} cannot be had", outcome.err)
+
+
+class LiveMapView(MapCase):
+    def test_a_map_that_scans_change_is_drawn_anew(self):
+        environment = browser_environment(self)
+        self.run_server("use_box:=true", "unknown:=occupied", "resolution_m:=0.2", "radius_m:=0.0",
+                        "margin_m:=0.0", "box_x_max_m:=10.0", "box_y_max_m:=10.0",
+                        "box_z_max_m:=4.0")
+        for topic, kind, message in [
+                ("odom", "nav_msgs/msg/Odometry", odometry((5.1, 5.1, 2.1))),
+                ("cloud_in", "sensor_msgs/msg/PointCloud2", cloud([(8.1, 5.1, 2.1)]))]:
+            self.sandbox.start(GOSHAWK, "topic", "pub", topic, kind, json.dumps(message), "-r", "5",
+                               "-n", "100000")
+        view = self.sandbox.start(GOSHAWK, "view", "--live", "--bridge",
+                                  f"ws://127.0.0.1:{free_port()}", "--port", "0", "--no-open",
+                                  "--json", env=environment)
+        shown = until(view.lines, 15.0)
+        self.assertTrue(shown and shown[0]["ok"], str(view.outcome()))
+        look(self, "live_map_test.mjs", shown[0]["url"])
+        self.assertEqual(view.stop()[0], 0, str(view.outcome()))
 
 
 class LiveView(StackTest):
@@ -104,6 +193,22 @@ class LiveView(StackTest):
         self.assertLess(math.dist(self.stack.place(), goal), 0.2)
         status, _ = view.stop()
         self.assertEqual(status, 0, str(view.outcome()))
+
+    def test_foxglove_studio_flies_it_too(self):
+        environment = studio_environment(self)
+        # The goal of its layout is (3, 8, 2).
+        self.assertEqual(self.stack.fly_to((3.0, 0.0, 1.0))["state"], "arrived")
+        view = self.sandbox.start(GOSHAWK, "view", "--foxglove", "--live", "--bridge",
+                                  f"ws://127.0.0.1:{self.port}", "--port", "0", "--no-open",
+                                  "--json", env=environment)
+        shown = until(view.lines, 60.0)
+        self.assertTrue(shown and shown[0]["ok"], str(view.outcome()))
+        since = len(self.stack.states.lines())
+        look(self, "studio_page_test.mjs", shown[0]["url"], "live")
+        state = self.stack.wait_state({"arrived", "failed"}, since, 20.0)
+        self.assertEqual(state and state["state"], "arrived", str(state))
+        self.assertLess(math.dist(self.stack.place(), (3.0, 8.0, 2.0)), 0.2)
+        self.assertEqual(view.stop()[0], 0, str(view.outcome()))
 
     def test_other_viewers_get_markers(self):
         self.assertEqual(self.stack.fly_to((3.0, 0.0, 1.0))["state"], "arrived")

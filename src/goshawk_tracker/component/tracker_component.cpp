@@ -5,6 +5,7 @@
 #include "goshawk/conversions/plan.hpp"
 #include "goshawk/conversions/vehicle.hpp"
 #include "goshawk/runtime/component.hpp"
+#include "goshawk/runtime/map_subscription.hpp"
 #include "goshawk/runtime/stage.hpp"
 #include "goshawk/tracker/config.hpp"
 #include "goshawk/tracker/tracker.hpp"
@@ -63,7 +64,8 @@ class StepStatistics {
   double longest_gap_ms_ = 0.0;
 };
 
-/// committed_trajectory, odom, navigator_alive -> command, tracking_state
+/// committed_trajectory, odom, navigator_alive -> command, tracking_state; and map/voxels, once
+/// there may be a landing
 class TrackerComponent : public Component {
  public:
   explicit TrackerComponent(Node& node)
@@ -160,6 +162,11 @@ class TrackerComponent : public Component {
   // What must be said when odometry or the navigator are silent.
   void watch() {
     tracker_.watch(node_.now_ns());
+    // Not before: a large map would keep the control loop waiting while it is taken in.
+    if (tracker_.needs_map() && !map_) {
+      map_.emplace(node_, reporter_,
+                   [this](const auto& grid) { tracker_.set_map(grid, node_.now_ns()); });
+    }
     report_fault(tracker_.status());
   }
 
@@ -203,6 +210,7 @@ class TrackerComponent : public Component {
   Publisher<msg::ThrustAttitude> commands_;
   Publisher<msg::TrackingState> states_;
   msg::ThrustAttitude command_message_;
+  std::optional<MapSubscription> map_;
   std::optional<msg::CommittedTrajectory> waiting_;
   StepStatistics steps_;
   Timing accepted_;       // of the newest trajectory that was

@@ -3,13 +3,13 @@
 #include <cmath>
 #include <cstdio>
 
+#include "clock_time.hpp"
 #include "goshawk/core/vehicle.hpp"
 
 namespace goshawk::tracker {
 namespace {
 
-constexpr double kAtRest = 1e-3;                                   // [m/s], [m/s^2]
-constexpr std::int64_t kTimeBound_ns = 4'000'000'000'000'000'000;  // differences do not overflow
+constexpr double kAtRest = 1e-3;  // [m/s], [m/s^2]
 
 Error refuse(const CommittedTrajectory& committed, ErrorCode code, const std::string& why) {
   return fail(code, "trajectory " + std::to_string(committed.id) + " refused: " + why);

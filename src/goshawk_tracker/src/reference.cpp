@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <utility>
 
+#include "clock_time.hpp"
+
 namespace goshawk::tracker {
 namespace {
 
 constexpr double kShortestBrake_s = 0.5;
-
-double seconds(std::int64_t from_ns, std::int64_t to_ns) {
-  return double(to_ns - from_ns) * 1e-9;
-}
 
 }  // namespace
 

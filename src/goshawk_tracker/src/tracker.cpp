@@ -2,31 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "clock_time.hpp"
 #include "goshawk/tracker/admission.hpp"
 #include "goshawk/tracker/flatness.hpp"
 
 namespace goshawk::tracker {
 namespace {
 
-constexpr std::int64_t kTimeBound_ns = 4'000'000'000'000'000'000;  // differences do not overflow
-
-double seconds(std::int64_t from_ns, std::int64_t to_ns) {
-  return double(to_ns - from_ns) * 1e-9;
-}
-
-bool within_bound(std::int64_t time_ns) {
-  return time_ns >= -kTimeBound_ns && time_ns <= kTimeBound_ns;
-}
-
 const Error kNoFault{ErrorCode::ok, ""};
-
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
 
 }  // namespace
 
@@ -51,7 +35,8 @@ Result<Tracker> Tracker::create(const Config& config) {
   return Tracker(config);
 }
 
-Tracker::Tracker(const Config& config) : config_(config), controller_(config) {}
+Tracker::Tracker(const Config& config)
+    : config_(config), controller_(config), guard_(config.landing, config.land_height_m) {}
 
 Status Tracker::accept(CommittedTrajectory committed, std::int64_t now_ns) {
   if (auto status = admit(committed, config_); !status) return status;
@@ -247,49 +232,6 @@ void Tracker::watch_odometry(std::int64_t now_ns) {
   lose(now_ns, "no odometry for " + number(age_s) + " s, more than " +
                    number(config_.odometry_timeout_s) +
                    " s: no command goes out, the vehicle holds by itself; is its source alive?");
-}
-
-void Tracker::heard_navigator(std::int64_t now_ns) {
-  if (!within_bound(now_ns)) return;
-  heard_ns_ = now_ns;
-  deserted_ = kNoFault;
-  if (!landing_) return;
-  brake(now_ns);  // it may be needed where it is
-  landing_ = false;
-}
-
-void Tracker::watch_navigator(std::int64_t now_ns) {
-  const bool rests = reference_.at_rest(now_ns) && queue_.empty();
-  if (!rests) rest_since_ns_.reset();
-  if (rests && !rest_since_ns_) rest_since_ns_ = now_ns;
-  if (!heard_ns_ || seconds(*heard_ns_, now_ns) <= config_.navigator_timeout_s) return;
-  if (deserted_.code == ErrorCode::ok) {
-    deserted_ = fail(ErrorCode::stage_silent,
-                     "the navigator is silent for " + number(config_.navigator_timeout_s) +
-                         " s: what is committed is flown to its end and held there; landing " +
-                         number(config_.land_after_s) + " s later");
-  }
-  const std::int64_t since_ns = rest_since_ns_ ? std::max(*rest_since_ns_, *heard_ns_) : now_ns;
-  if (!landing_ && rests && seconds(since_ns, now_ns) >= config_.land_after_s) land(now_ns);
-}
-
-// Straight down, at rest at both ends: a quintic's top speed is 15/8 of its mean.
-void Tracker::land(std::int64_t now_ns) {
-  landing_ = true;
-  const FlatState from{.position = reference_.at(now_ns).position};
-  FlatState to = from;
-  to.position.z() = config_.land_height_m;
-  const double height_m = from.position.z() - to.position.z();
-  deserted_ = fail(ErrorCode::stage_silent,
-                   "the navigator is lost: landing below " + to_text(from.position) + " m");
-  if (height_m < 1e-3) return;
-  CommittedTrajectory down;
-  down.id = followed_id();
-  down.trajectory.pieces = {
-      BezierPiece::between(from, to, 15.0 / 8.0 * height_m / config_.land_speed_m_s)};
-  down.start_time_ns = now_ns;
-  down.yaw_rad = yaw_rad_;
-  reference_ = Reference::follow(std::move(down));
 }
 
 double Tracker::wanted_yaw() const {

@@ -9,6 +9,8 @@
 
 namespace goshawk::tracker {
 
+inline constexpr std::int64_t kSecond = 1'000'000'000;  // [ns]
+
 /// How long odometry takes to come and commands to arrive; drawn anew for each.
 struct Link {
   std::int64_t period_ns = 4'000'000;    // of odometry

@@ -9,8 +9,6 @@
 namespace goshawk::tracker {
 namespace {
 
-constexpr std::int64_t kSecond = 1'000'000'000;
-
 // Quintics are steep at their ends, so that their hulls reach beyond the tilt that is flown;
 // their curves do not.
 Config config_for(const std::string& controller) {

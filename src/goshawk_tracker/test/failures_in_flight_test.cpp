@@ -8,8 +8,6 @@
 namespace goshawk::tracker {
 namespace {
 
-constexpr std::int64_t kSecond = 1'000'000'000;
-
 // Ten metres along y, with 2 m/s in the middle.
 CommittedTrajectory ten_metres() {
   auto committed = straight_line({0, 0, 1}, {0, 10, 1}, 9.375);
@@ -17,8 +15,27 @@ CommittedTrajectory ten_metres() {
   return committed;
 }
 
+// The vehicle's own landing is the simulator's matter.
+simulator::Config anywhere() {
+  simulator::Config config;
+  config.landing = "anywhere";
+  return config;
+}
+
+// 4 x 14 x 3 m of 0.2 m around the line, with something whose top is at table_m and that lies from
+// y = 8 m to y = 12 m; 0: an empty room.
+std::shared_ptr<const VoxelGrid> room(double table_m) {
+  auto grid = std::make_shared<VoxelGrid>();
+  grid->geometry = {.origin_map = {-2.0, -2.0, 0.0}, .resolution_m = 0.2, .size = {20, 70, 15}};
+  grid->occupied = BitGrid(grid->geometry.size, true);
+  for (int z = 0; 0.2 * z < table_m - 0.1; ++z) {
+    for (int y = 50; y < 70; ++y) grid->occupied.set_run(0, 20, y, z, true);
+  }
+  return grid;
+}
+
 struct Flight {
-  Flight() : loop(Config{}, simulator::Config{}) {
+  explicit Flight(const Config& tracker = {}) : loop(tracker, anywhere()) {
     EXPECT_TRUE(loop.vehicle.reset({0, 0, 1}, 0.0));
     loop.run_until(kSecond / 2);
     EXPECT_TRUE(loop.tracker.accept(ten_metres(), loop.vehicle.time_ns()));
@@ -167,9 +184,13 @@ TEST(FailuresInFlight, WithoutTheNavigatorTheEndIsHeldThenLandedFrom) {
   loop.run_until(loop.vehicle.time_ns() + 2'100'000'000);
   EXPECT_EQ(loop.tracker.status().mode, Mode::follow);
   EXPECT_EQ(loop.tracker.status().fault.code, ErrorCode::stage_silent);
+  EXPECT_FALSE(loop.tracker.needs_map());  // not in flight, where taking one in would disturb
   loop.run_until(12 * kSecond);
   EXPECT_EQ(loop.tracker.status().mode, Mode::hold);
   EXPECT_LT((loop.vehicle.state().position_map - Vec3(0, 10, 1)).norm(), 0.01);
+  EXPECT_TRUE(loop.tracker.needs_map());
+  loop.tracker.set_map(room(0.0), loop.vehicle.time_ns());
+  EXPECT_FALSE(loop.tracker.needs_map());
   loop.run_until(22 * kSecond);
   EXPECT_EQ(loop.tracker.status().mode, Mode::land);
   EXPECT_NE(loop.tracker.status().fault.message.find("landing"), std::string::npos);
@@ -184,6 +205,55 @@ TEST(FailuresInFlight, WithoutTheNavigatorTheEndIsHeldThenLandedFrom) {
   loop.run_until(45 * kSecond);
   EXPECT_EQ(loop.tracker.status().mode, Mode::land);
   EXPECT_LT((loop.vehicle.state().position_map - Vec3(0, 10, 0.1)).norm(), 0.02);
+}
+
+TEST(FailuresInFlight, OverAnObstacleItHoldsAndSaysWhyUntilAMapShowsTheWayDownFree) {
+  Flight flight;
+  auto& loop = flight.loop;
+  loop.tracker.heard_navigator(loop.vehicle.time_ns());
+  const auto holds_because = [&](ErrorCode code, double height_m) {
+    const auto status = loop.tracker.status();
+    EXPECT_EQ(status.mode, Mode::hold);
+    EXPECT_EQ(status.fault.code, code) << status.fault.message;
+    EXPECT_NE(status.fault.message.find("instead of landing"), std::string::npos);
+    EXPECT_LT((loop.vehicle.state().position_map - Vec3(0, 10, height_m)).norm(), 0.02);
+  };
+  loop.run_until(25 * kSecond);
+  holds_because(ErrorCode::no_map, 1.0);
+  loop.tracker.set_map(room(0.6), loop.vehicle.time_ns());
+  loop.run_until(30 * kSecond);
+  holds_because(ErrorCode::goal_occupied, 1.0);
+  loop.tracker.set_map(room(0.0), loop.vehicle.time_ns());
+  loop.run_until(32 * kSecond);
+  EXPECT_EQ(loop.tracker.status().mode, Mode::land);
+  // Someone pushes a table below it: it stops on its way down.
+  loop.tracker.set_map(room(0.4), loop.vehicle.time_ns());
+  const double height_m = loop.vehicle.state().position_map.z();
+  EXPECT_LT(height_m, 0.95);
+  EXPECT_GT(height_m, 0.6);
+  loop.run_until(34 * kSecond);
+  const double held_m = loop.vehicle.state().position_map.z();
+  EXPECT_GT(held_m, height_m - 0.15);
+  loop.run_until(50 * kSecond);
+  holds_because(ErrorCode::goal_occupied, held_m);
+  loop.tracker.heard_navigator(loop.vehicle.time_ns());
+  EXPECT_EQ(loop.tracker.status().fault.code, ErrorCode::ok);
+}
+
+TEST(FailuresInFlight, TheRuleOfLandingIsAsConfigured) {
+  for (const std::string rule : {"anywhere", "never"}) {
+    Config config;
+    config.landing = rule;
+    Flight flight(config);
+    auto& loop = flight.loop;
+    loop.tracker.heard_navigator(loop.vehicle.time_ns());
+    loop.run_until(40 * kSecond);
+    EXPECT_FALSE(loop.tracker.needs_map());
+    const auto status = loop.tracker.status();
+    EXPECT_EQ(status.mode, rule == "never" ? Mode::hold : Mode::land);
+    EXPECT_EQ(status.fault.code, rule == "never" ? ErrorCode::cancelled : ErrorCode::stage_silent);
+    EXPECT_NEAR(loop.vehicle.state().position_map.z(), rule == "never" ? 1.0 : 0.1, 0.02);
+  }
 }
 
 TEST(FailuresInFlight, ATrackerThatNeverHeardANavigatorNeverLands) {

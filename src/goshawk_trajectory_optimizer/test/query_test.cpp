@@ -9,7 +9,7 @@ namespace {
 
 using test::at_rest;
 
-TrajectoryOptimizer make() {
+TrajectoryOptimizer default_optimizer() {
   return TrajectoryOptimizer::create({}).value();
 }
 
@@ -21,7 +21,7 @@ Result<Solution> from_rest(TrajectoryOptimizer& optimizer, const Corridor& corri
 
 TEST(GivenArrival, IsMetAndSmootherThanTheSoonest) {
   Random random(31);
-  auto optimizer = make();
+  auto optimizer = default_optimizer();
   for (int i = 0; i < 60; ++i) {
     SCOPED_TRACE(i);
     const auto corridor = test::random_corridor(random, {});
@@ -37,7 +37,7 @@ TEST(GivenArrival, IsMetAndSmootherThanTheSoonest) {
 }
 
 TEST(GivenArrival, TooSoonIsRefusedWithTheSoonest) {
-  auto optimizer = make();
+  auto optimizer = default_optimizer();
   const auto solution = from_rest(optimizer, test::straight_corridor(8.0), {}, {.duration_s = 3.0});
   ASSERT_FALSE(solution);
   EXPECT_EQ(solution.code(), ErrorCode::trajectory_infeasible);
@@ -45,7 +45,7 @@ TEST(GivenArrival, TooSoonIsRefusedWithTheSoonest) {
 }
 
 TEST(GivenArrival, NonsenseIsRefused) {
-  auto optimizer = make();
+  auto optimizer = default_optimizer();
   for (const double bad : {-1.0, double(NAN), HUGE_VAL, 1e9}) {
     const auto solution =
         from_rest(optimizer, test::straight_corridor(8.0), {}, {.duration_s = bad});
@@ -55,7 +55,7 @@ TEST(GivenArrival, NonsenseIsRefused) {
 }
 
 TEST(GivenArrival, FromAMovingStart) {
-  auto optimizer = make();
+  auto optimizer = default_optimizer();
   auto start = at_rest(Vec3::Zero());
   start.velocity = Vec3(1.0, 0.3, 0);
   const auto corridor = test::straight_corridor(6.0, 1.5);
@@ -67,7 +67,7 @@ TEST(GivenArrival, FromAMovingStart) {
 }
 
 TEST(Stop, IsNearlyAsShortAsBrakingAllows) {
-  auto optimizer = make();
+  auto optimizer = default_optimizer();
   const Polytope room = Polytope::box(Vec3(-10, -10, -10), Vec3(10, 10, 10));
   for (const double v : {0.2, 1.0, 2.0, 3.0}) {
     SCOPED_TRACE(v);
@@ -84,7 +84,7 @@ TEST(Stop, IsNearlyAsShortAsBrakingAllows) {
 }
 
 TEST(Stop, WithoutRoomSaysSo) {
-  auto optimizer = make();
+  auto optimizer = default_optimizer();
   auto start = at_rest(Vec3::Zero());
   start.velocity = Vec3(2.0, 0, 0);  // needs 1 m
   const auto solution = optimizer.stop(Polytope::box(Vec3(-1, -1, -1), Vec3(0.5, 1, 1)), start, {});
@@ -93,7 +93,7 @@ TEST(Stop, WithoutRoomSaysSo) {
 }
 
 TEST(Deadline, EndsTheWork) {
-  auto optimizer = make();
+  auto optimizer = default_optimizer();
   Random random(4);
   const auto corridor = test::random_corridor(random, {});
   int asked = 0;
@@ -107,7 +107,7 @@ TEST(Deadline, EndsTheWork) {
 
 TEST(JerkLimit, HoldsOnTheCurveAndCostsTime) {
   Random random(12);
-  auto optimizer = make();
+  auto optimizer = default_optimizer();
   for (int i = 0; i < 100; ++i) {
     SCOPED_TRACE(i);
     const auto corridor = test::random_corridor(random, {});
@@ -126,7 +126,7 @@ TEST(JerkLimit, HoldsOnTheCurveAndCostsTime) {
 }
 
 TEST(JerkLimit, IsNearlyTimeOptimalOnALongStraightLine) {
-  auto optimizer = make();
+  auto optimizer = default_optimizer();
   // Rest to rest with |j| <= j: ramps of a_max / j at each end of each acceleration.
   const Limits limits{.j_max_m_s3 = 4.0};
   const double least_s = 10.0 / 2.0 + 2.0 / 2.0 + 2.0 / 4.0;
@@ -138,7 +138,7 @@ TEST(JerkLimit, IsNearlyTimeOptimalOnALongStraightLine) {
 
 TEST(HorizontalAndVertical, EachHasItsOwnLimit) {
   Random random(13);
-  auto optimizer = make();
+  auto optimizer = default_optimizer();
   for (int i = 0; i < 100; ++i) {
     SCOPED_TRACE(i);
     const auto corridor = test::random_corridor(random, {});
@@ -161,7 +161,7 @@ TEST(HorizontalAndVertical, EachHasItsOwnLimit) {
 }
 
 TEST(HorizontalAndVertical, ASlowClimbTakesItsTime) {
-  auto optimizer = make();
+  auto optimizer = default_optimizer();
   Corridor corridor;
   corridor.waypoints_map = {Vec3::Zero(), Vec3(0, 0, 4)};
   corridor.polytopes = {Polytope::box(Vec3(-1, -1, -1), Vec3(1, 1, 5))};

@@ -37,7 +37,7 @@ Goshawk.FlightPage = class extends Goshawk.Page {
     view.setFlown(this.track);
     const map = view.maps.obstacles || view.maps.grown;
     if (map) {
-      this.setCutRange(map.origin[2], map.upper(2), view.bestCut(this.framed()));
+      this.setCutRange(map.origin[2], map.upper(2), Goshawk.bestCut(map, this.framed()));
     } else {
       $('cut-row').hidden = true;
     }

@@ -31,7 +31,7 @@ Goshawk.Voxels = class {
     return voxels;
   }
 
-  // Rows of 64-bit words as goshawk_msgs/VoxelGrid has them.
+  // Rows of 64-bit words as goshawk_msgs/VoxelGrid has them, as the bytes they are on the wire.
   static fromWords(origin, resolution, size, bytes) {
     const voxels = new Goshawk.Voxels(origin, resolution, size);
     const rowBytes = Math.ceil(size[0] / 64) * 8;
@@ -41,6 +41,24 @@ Goshawk.Voxels = class {
       }
     }
     return voxels;
+  }
+
+  // The same, of words as a BigUint64Array.
+  static fromBigWords(origin, resolution, size, words) {
+    const bytes = new Uint8Array(words.buffer, words.byteOffset, words.byteLength);
+    return Goshawk.Voxels.fromWords(origin, resolution, size, bytes);
+  }
+
+  // The new content of 64 x 8 x 8 voxels, as goshawk_msgs/VoxelBrick has it: a word a row.
+  setBrick(brick) {
+    const first = [64 * brick.word_x, 8 * brick.brick_y, 8 * brick.brick_z];
+    const last = first.map((c, i) => Math.min(this.size[i], c + (i ? 8 : 64)));
+    for (let z = first[2]; z < last[2]; ++z) for (let y = first[1]; y < last[1]; ++y) {
+      const word = 8 * (8 * (z & 7) + (y & 7)), row = this.size[0] * (y + this.size[1] * z);
+      for (let x = first[0]; x < last[0]; ++x) {
+        this.cells[row + x] = (brick.occupied[word + ((x & 63) >> 3)] >> (x & 7)) & 1;
+      }
+    }
   }
 
   upper(axis) { return this.origin[axis] + this.size[axis] * this.resolution; }

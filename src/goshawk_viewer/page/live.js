@@ -17,14 +17,17 @@ Goshawk.LivePage = class extends Goshawk.Page {
     $('timeline').hidden = true;
     this.track = [];
     this.paths = new Map();
+    this.reports = new Map();
     this.curves = {speed: [], acceleration: [], error: []};
     this.makePlots(null);
     this.state = {link: 'connecting', mode: '', text: ''};
     this.bindGoal();
     this.client = new Goshawk.FoxgloveClient(this.url, {
-      'map/voxels': m => this.onGrown(m), octomap_binary: m => this.onMap(m),
+      'map/voxels': m => this.onGrown(m), 'map/voxels/updates': m => this.onUpdate(m),
+      octomap_binary: m => this.onMap(m),
       path: m => this.onPath(m), committed_trajectory: m => this.onTrajectory(m),
       odom: m => this.onOdometry(m), navigator_state: m => this.onNavigator(m),
+      stage_report: m => this.onReport(m),
     }, text => this.setLink(text));
     this.tell();
   }
@@ -56,8 +59,20 @@ Goshawk.LivePage = class extends Goshawk.Page {
 
   onGrown(m) {
     if (!this.view) return;
-    this.showMap('grown', Goshawk.Voxels.fromWords(
-        xyz(m.origin), m.resolution, [m.size_x, m.size_y, m.size_z], m.occupied));
+    const voxels = Goshawk.Voxels.fromWords(
+        xyz(m.origin), m.resolution, [m.size_x, m.size_y, m.size_z], m.occupied);
+    voxels.version = m.version;
+    this.showMap('grown', voxels);
+  }
+
+  // Bricks that changed. One that does not follow is left out: the whole map comes again soon after.
+  onUpdate(m) {
+    const grown = this.view && this.view.maps.grown;
+    if (!grown || grown.version !== m.from_version) return;
+    for (const brick of m.bricks) grown.setBrick(brick);
+    grown.version = m.to_version;
+    this.mapUpdates = (this.mapUpdates || 0) + 1;
+    this.mapOld = true;
   }
 
   showMap(kind, voxels) {
@@ -71,8 +86,11 @@ Goshawk.LivePage = class extends Goshawk.Page {
       $('goal-height').value = last ? last.p[2] : (voxels.origin[2] + voxels.upper(2)) / 2;
       this.showHeight();
     }
-    this.view.drawMaps();
-    if (first) this.view.frame([]);
+    if (first) {
+      this.view.drawMaps();
+      this.view.frame([]);
+    }
+    this.mapOld = !first;
   }
 
   onPath(m) {
@@ -135,7 +153,32 @@ Goshawk.LivePage = class extends Goshawk.Page {
     this.tell();
   }
 
+  // Maps may change ten times a second: they are drawn as often as leaves time for all else.
+  redrawMap(time) {
+    if (!this.mapOld || time < (this.nextMap || 0)) return;
+    this.mapOld = false;
+    const begin = performance.now();
+    this.view.drawMaps();
+    this.nextMap = time + Math.max(0.2, 5e-3 * (performance.now() - begin));
+  }
+
+  // The newest that each stage said: how long it took, or what is wrong, in its own words.
+  onReport(m) {
+    if (m.code === 'ok' && m.request_id === 0) return;
+    this.reports.set(m.stage, m);
+    $('reports').replaceChildren(...[...this.reports].flatMap(([stage, report]) => {
+      const dt = document.createElement('dt'), dd = document.createElement('dd');
+      const good = report.code === 'ok';
+      dt.textContent = stage;
+      dd.textContent = good ? (1e-6 * report.compute_ns).toFixed(2) + ' ms' : report.code;
+      dd.className = good ? '' : 'bad';
+      dd.title = report.message;
+      return [dt, dd];
+    }));
+  }
+
   step(time) {
+    if (this.view) this.redrawMap(time);
     if (!this.pose) return;
     if (this.view) this.view.setVehicle(this.pose.p, this.pose.q);
     if (!this.fresh || time - (this.drawn || 0) < 0.15) return;

@@ -1,14 +1,17 @@
 #!/usr/bin/python3
 """Puts page, style, scripts and three.js into one file that needs nothing else.
 
-    bundle.py PAGE_FOLDER THREE_FOLDER OUTPUT
+    bundle.py PAGE_FOLDER THREE_FOLDER STUDIO_FOLDER PAGE_OUTPUT MESSAGES_OUTPUT
+
+The messages' output is what Foxglove Studio draws our messages with.
 """
 
 import pathlib
 import sys
 
-SCRIPTS = ["geometry.js", "scene.js", "plots.js", "panel.js", "flight.js", "cdr.js", "foxglove.js",
-           "live.js", "start.js"]
+SCRIPTS = ["geometry.js", "theme.js", "map_meshes.js", "vehicle.js", "sight.js", "scene.js", "plots.js",
+           "panel.js", "flight.js", "cdr.js", "octomap.js", "foxglove.js", "live.js", "start.js"]
+MESSAGES = ["geometry.js", "theme.js", "octomap.js"]
 THREE = ["three.min.js", "examples/js/controls/OrbitControls.js",
          "examples/js/lines/LineSegmentsGeometry.js", "examples/js/lines/LineGeometry.js",
          "examples/js/lines/LineMaterial.js", "examples/js/lines/LineSegments2.js",
@@ -43,7 +46,7 @@ def joined(folder, names):
 
 
 def main():
-    page, three, output = map(pathlib.Path, sys.argv[1:])
+    page, three, studio, output, messages = map(pathlib.Path, sys.argv[1:])
     missing = [name for name in THREE if not (three / name).is_file()]
     if missing:
         sys.exit(f"three.js is not whole in {three}: {missing[0]} is missing; install libjs-three")
@@ -54,6 +57,7 @@ def main():
         before, after = text.split(mark)
         text = before + part + after
     output.write_text(text, encoding="utf-8")
+    messages.write_text(joined(page, MESSAGES) + joined(studio, ["messages.js"]), encoding="utf-8")
 
 
 if __name__ == "__main__":

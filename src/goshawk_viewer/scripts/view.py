@@ -1,15 +1,16 @@
 #!/usr/bin/python3
-"""goshawk view: shows a flight, or what flies now, in a browser.
+"""goshawk view: shows a flight, a recording, or what flies now, in a browser.
 
     goshawk view                     the newest flight of ./flights
     goshawk view FLIGHT_FOLDER       that one
+    goshawk view FILE.mcap           what was recorded
     goshawk view --live              what flies now; starts a bridge where none listens
+    goshawk view --foxglove ...      the same in Foxglove Studio, with a layout of ours
 
-Serves one page on this machine until Ctrl-C.
+Serves it on this machine until Ctrl-C.
 """
 
 import argparse
-import http.server
 import json
 import os
 import pathlib
@@ -18,8 +19,11 @@ import signal
 import socket
 import subprocess
 import sys
+import tempfile
 import threading
 import time
+
+import page_server
 
 DONE, NOT_DONE, WRONG_CALL = 0, 1, 2
 MARK = "@FLIGHT@"
@@ -34,8 +38,11 @@ class Fault(Exception):
 def parse(arguments):
     parser = argparse.ArgumentParser(prog="goshawk view", description=__doc__.split("\n\n")[0],
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("folder", nargs="?", help="flight folder (default: the newest in ./flights)")
+    parser.add_argument("what", nargs="?", help="flight folder, or MCAP recording (default: the "
+                        "newest folder in ./flights)")
     parser.add_argument("--live", action="store_true", help="look at what flies now")
+    parser.add_argument("--foxglove", action="store_true", help="in Foxglove Studio, which "
+                        "tools/setup --viewer fetches")
     parser.add_argument("--port", type=int, default=8080, help="of the page (default 8080; 0: any)")
     parser.add_argument("--bridge", default="ws://127.0.0.1:8765", help="where the bridge listens")
     parser.add_argument("--no-open", action="store_true", help="do not start a browser")
@@ -43,8 +50,8 @@ def parse(arguments):
     parser.add_argument("--json", action="store_true", help="print one JSON object")
     parser.add_argument("--prefix", help=argparse.SUPPRESS)
     options = parser.parse_args(arguments)
-    if options.live and options.folder:
-        parser.error("a flight folder and --live: one of them")
+    if options.live and options.what:
+        parser.error("a flight or recording, and --live: one of them")
     if not 0 <= options.port <= 65535:
         parser.error("--port goes from 0 to 65535")
     return options
@@ -58,15 +65,36 @@ def newest_flight():
     return pages[-1].parent
 
 
-def flight_page(folder):
-    path = pathlib.Path(folder)
-    file = path / "flight.html" if path.is_dir() else path
+def readable(file):
+    """@return the file, opened once; raises a Fault where it cannot be read"""
     try:
-        page = file.read_bytes()
+        with open(file, "rb") as opened:
+            opened.read(1)
     except OSError as error:
-        raise Fault("io_failed", f"{file} cannot be read ({error.strerror}): is it a flight folder?",
-                    WRONG_CALL) from None
-    return str(file), page
+        raise Fault("io_failed", f"{file} cannot be read ({error.strerror}): is it a flight folder, "
+                    "or a recording?", WRONG_CALL) from None
+    return file
+
+
+def part_of(what, name):
+    """The file of that name in a flight folder; a file stands for itself."""
+    path = pathlib.Path(what or newest_flight())
+    return readable(path / name if path.is_dir() else path)
+
+
+def page_of_recording(prefix, recording):
+    """The page of a flight, made from a recording alone. @return its bytes"""
+    with tempfile.TemporaryDirectory(prefix="goshawk_view_") as folder:
+        page = pathlib.Path(folder) / "flight.html"
+        made = subprocess.run([f"{prefix}/lib/goshawk/recording_page", str(recording),
+                               f"{prefix}/share/goshawk/viewer/page.html", str(page)],
+                              stdin=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        if made.returncode != 0:
+            code, _, sentence = made.stderr.strip().rpartition("\n")[2].partition(": ")
+            raise Fault(code or "io_failed", sentence or "the recording cannot be shown",
+                        WRONG_CALL if code in ("io_failed", "invalid_input") else NOT_DONE)
+        sys.stderr.write(made.stderr)  # what is missing in it
+        return page.read_bytes()
 
 
 def live_page(prefix, bridge):
@@ -113,35 +141,15 @@ def start_bridge(prefix, place):
     raise Fault("stage_silent", "the bridge does not listen after 10 s")
 
 
-def handler_of(page):
-    class Handler(http.server.BaseHTTPRequestHandler):
-        """One page, for this machine alone."""
-        server_version = "goshawk"
-
-        def do_GET(self):
-            found = self.path.split("?")[0] in ("/", "/index.html")
-            body = page if found else b"there is one page here: /\n"
-            self.send_response(200 if found else 404)
-            self.send_header("Content-Type", "text/html; charset=utf-8" if found else "text/plain")
-            self.send_header("Content-Length", str(len(body)))
-            self.send_header("Cache-Control", "no-store")
-            self.end_headers()
-            self.wfile.write(body)
-
-        def log_message(self, *_):
-            pass
-    return Handler
-
-
 def open_browser(url):
     opener = shutil.which("xdg-open")
     if opener and (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
         subprocess.Popen([opener, url], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
 
-def serve(options, page, shown):
+def serve(options, site, shown):
     try:
-        server = http.server.ThreadingHTTPServer(("127.0.0.1", options.port), handler_of(page))
+        server = page_server.start(site, options.port)
     except OSError as error:
         raise Fault("io_failed", f"port {options.port} cannot be had ({error.strerror}): "
                     "--port takes another, --port 0 any") from None
@@ -152,7 +160,6 @@ def serve(options, page, shown):
     done = threading.Event()
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: done.set())
-    threading.Thread(target=server.serve_forever, daemon=True).start()
     done.wait()
     server.shutdown()
 
@@ -167,21 +174,69 @@ def tell(options, result):
         print(f"goshawk view: {result['code']}: {result['message']}", file=sys.stderr)
 
 
-def run(options):
-    bridge = None
+def own_site(options):
+    """Our own page. @return what is served, and what it shows"""
+    site = page_server.Site()
     if options.live:
-        place = place_of(options.bridge)
-        shown = f"what flies now, by {options.bridge}"
-        page = live_page(options.prefix, options.bridge).encode()
+        site.add("/", live_page(options.prefix, options.bridge).encode())
+        return site, f"what flies now, by {options.bridge}"
+    file = part_of(options.what, "flight.html")
+    is_page = file.suffix == ".html"
+    site.add("/", file.read_bytes() if is_page else page_of_recording(options.prefix, file))
+    return site, str(file)
+
+
+def foxglove_site(options):
+    """Foxglove Studio, our layout, and the recording. @return what is served, and what it shows"""
+    share = pathlib.Path(options.prefix) / "share/goshawk/viewer"
+    site = page_server.Site()
+    files = studio_files(options.prefix)
+    for name, file in files.items():
+        site.add(name, without_source_map(file))
+    site.add_folder("/assets/", files["/assets/index.js"].parent)
+    site.add("/layout.json", share / "foxglove_layout.json")
+    site.add_folder("/", share / "studio")
+    site.add("/", (share / "studio/index.html").read_bytes())
+    if options.live:
+        shown, source = f"what flies now, by {options.bridge}", {"bridge": options.bridge}
     else:
-        shown, page = flight_page(options.folder or newest_flight())
+        recording = part_of(options.what, "flight.mcap")
+        shown, source = str(recording), {"recording": "/recording.mcap"}
+        site.add("/recording.mcap", recording)
+    site.add("/show.json", json.dumps(source).encode())
+    return site, f"{shown}, in Foxglove Studio"
+
+
+def without_source_map(script):
+    """Half of the studio's largest script is a map for its developers, at the end."""
+    text = script.read_bytes()
+    mark = text.rfind(b"\n//# sourceMappingURL=data:")
+    return text if mark < 0 else text[:mark]
+
+
+def studio_files(prefix):
+    """What npm brought of Foxglove Studio, by its name on the page."""
+    modules = pathlib.Path(os.environ.get("GOSHAWK_NODE_MODULES") or
+                           pathlib.Path(prefix).parent / "build/node/node_modules")
+    files = {"/assets/index.js": modules / "@foxglove/studio-base/assets/index.js",
+             "/react.js": modules / "react/umd/react.production.min.js",
+             "/react-dom.js": modules / "react-dom/umd/react-dom.production.min.js"}
+    for file in files.values():
+        if not file.is_file():
+            raise Fault("io_failed", f"Foxglove Studio is not installed ({file} is missing): "
+                        "tools/setup --viewer fetches it, or leave --foxglove out")
+    return files
+
+
+def run(options):
+    place = place_of(options.bridge) if options.live else None
+    site, shown = (foxglove_site if options.foxglove else own_site)(options)
     if options.check:
         tell(options, {"ok": True, "code": "ok", "message": "", "url": None, "shows": shown})
         return
-    if options.live:
-        bridge = start_bridge(options.prefix, place)
+    bridge = start_bridge(options.prefix, place) if options.live else None
     try:
-        serve(options, page, shown)
+        serve(options, site, shown)
     finally:
         if bridge:
             bridge.terminate()

@@ -72,7 +72,7 @@ class RawClient {
   }
 
   /// @return false where none came in time, or the connection is closed
-  bool read(Frame& frame, int timeout_ms = 3000) {
+  bool read(Frame& frame, int timeout_ms = 60000) {
     const auto have = [&](std::size_t n) {
       while (buffer_.size() < n) {
         if (!fill(timeout_ms)) return false;
@@ -96,7 +96,7 @@ class RawClient {
   }
 
   /// Reads until a frame of that opcode. @return its payload, or "nothing"
-  std::string wait_for(int opcode, int timeout_ms = 3000) {
+  std::string wait_for(int opcode, int timeout_ms = 60000) {
     Frame frame;
     while (read(frame, timeout_ms)) {
       if (frame.opcode == opcode) return frame.payload;

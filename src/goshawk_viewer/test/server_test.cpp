@@ -14,7 +14,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-bool comes_true(const std::function<bool()>& condition, double timeout_s = 5.0) {
+bool comes_true(const std::function<bool()>& condition, double timeout_s = 60.0) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(timeout_s);
   while (!condition()) {
     if (std::chrono::steady_clock::now() > end) return false;

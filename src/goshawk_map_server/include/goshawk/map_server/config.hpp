@@ -62,10 +62,11 @@ void describe(Self& c, Visitor&& visit) {
   visit("box_y_max_m", c.box_y_max_m, "m", "upper corner of the box", Anything{});
   visit("box_z_max_m", c.box_z_max_m, "m", "upper corner of the box", Anything{});
   visit("max_voxels", c.max_voxels, "", "larger maps are refused", Range{1.0, 2147483647.0});
-  visit("publish_raw", c.publish_raw, "",
-        "also publish map/voxels/raw, the map before obstacles grow: a corridor_builder with margin "
-        "sphere needs it",
-        Anything{});
+  visit(
+      "publish_raw", c.publish_raw, "",
+      "also publish map/voxels/raw, the map before obstacles grow: a corridor_builder with margin "
+      "sphere needs it",
+      Anything{});
 }
 
 /// The config in the terms of the functions that do the work. @pre values as describe() allows;

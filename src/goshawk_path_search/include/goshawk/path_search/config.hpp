@@ -27,6 +27,7 @@ struct Config {
   double clearance_m = 0.0;
   double clearance_weight = 1.0;
 
+  std::string validity = "grid";
   int max_iterations = 2000;
   double step_m = 1.0;
   int seed = 1;
@@ -49,9 +50,10 @@ void describe(Self& c, Visitor&& visit) {
         "squeeze: only the target voxel is, so paths may touch obstacle edges",
         OneOf{{"no_squeeze", "squeeze"}});
   visit("pruning", c.pruning, "",
-        "waypoints: shortest (shortest polyline over the path's own nodes), greedy (farthest "
-        "visible node) or none",
-        OneOf{{"shortest", "greedy", "none"}});
+        "waypoints: shortest (shortest polyline over the path's own nodes), relaxed (that, pulled "
+        "tight off the voxel centres: shorter, but along obstacles), greedy (farthest visible "
+        "node) or none",
+        OneOf{{"shortest", "relaxed", "greedy", "none"}});
   visit("time_limit_s", c.time_limit_s, "s",
         "longest search; a request's own deadline may be shorter", Range::positive(1e6));
   visit("move_within_m", c.move_within_m, "m",
@@ -76,6 +78,10 @@ void describe(Self& c, Visitor&& visit) {
         "a move beside a blocked voxel costs 1 + this times its length, falling to 1 at "
         "clearance_m",
         Range{0.0, 1e3});
+  visit("validity", c.validity, "",
+        "rrt, rrtstar, prm: what says that a segment is free: grid (exact line of sight) or fcl "
+        "(collision checks of the Flexible Collision Library; slower, for comparisons)",
+        OneOf{{"grid", "fcl"}});
   visit("max_iterations", c.max_iterations, "",
         "rrt, rrtstar, prm: samples before giving up (rrt) or being content", Range{1.0, 1e8});
   visit("step_m", c.step_m, "m", "rrt, rrtstar: longest edge of the tree", Range::positive(1e3));

@@ -41,6 +41,8 @@ class LabelTable {
   Label& operator[](std::uint32_t node) { return labels_.get()[node]; }
   Label operator[](std::uint32_t node) const { return labels_.get()[node]; }
 
+  const Label* at(std::uint32_t node) const { return labels_.get() + node; }
+
   /// Asks for a label that is read soon.
   void prefetch(std::uint32_t node) const { __builtin_prefetch(labels_.get() + node, 1); }
 

@@ -71,6 +71,7 @@ class PathSearch {
   Status place(const PlanQuery& query);
   Status search(const PlanQuery& query, PlannedPath& path);
   void fill(PlannedPath& path);
+  void relax(std::vector<Vec3>& waypoints_map);
 
   Config config_;
   std::unique_ptr<GridPlanner> planner_;
@@ -90,6 +91,7 @@ class PathSearch {
   VoxelPath voxel_path_;
   std::vector<Vec3> nodes_grid_;
   std::vector<int> kept_;
+  std::vector<Vec3> relaxed_grid_, relaxed_map_;
 };
 
 }  // namespace goshawk::path_search

@@ -15,6 +15,7 @@ enum class Pruning {
   none,      // every node stays
   greedy,    // thesis, Algorithm 2
   shortest,  // the shortest polyline over the path's own nodes
+  relaxed,   // the nodes of shortest; relaxation.hpp then moves them
 };
 
 /// @return invalid_parameter for a word that is not a pruning

@@ -8,14 +8,18 @@ namespace goshawk::path_search {
 
 enum class SamplingMethod { rrt, rrtstar, prm };
 
+/// What says that a segment is free (segment_validity.hpp).
+enum class Validity { grid, fcl };
+
 struct SamplingOptions {
   int max_iterations = 2000;  // samples; rrt ends with its first path, the others use all
   double step_voxels = 5.0;   // longest edge of a tree
   std::uint64_t seed = 1;
+  Validity validity = Validity::grid;
 };
 
 /// RRT (LaValle 1998), RRT* (Karaman and Frazzoli 2011) and PRM (Kavraki et al. 1996) from OMPL,
-/// on the grid: an edge is valid where goshawk::line_is_free says so, whatever the corner rule.
+/// on the grid: an edge is valid where the chosen validity says so, whatever the corner rule.
 ///
 /// A query that ends by its iterations gives the same path bit for bit each time. Where its
 /// deadline ends it, RRT* and PRM give the best path so far, deadline_exceeded if there is none;

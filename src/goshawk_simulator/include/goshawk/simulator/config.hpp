@@ -16,6 +16,7 @@ struct Config {
   double command_timeout_s = 0.1;
   double failsafe_tilt_rad = 0.87;
   double failsafe_hold_s = 10.0;
+  std::string landing = "map";
   double land_speed_m_s = 0.3;
   double land_height_m = 0.1;
   SensorParameters sensor;
@@ -45,13 +46,10 @@ void describe(Self& s, Visitor&& visit) {
 }
 
 template <typename Self, typename Visitor>
-requires std::same_as<std::remove_const_t<Self>, Config>
-void describe(Self& c, Visitor&& visit) {
+requires std::same_as<std::remove_const_t<Self>, VehicleParameters>
+void describe(Self& v, Visitor&& visit) {
   const auto positive = Range::positive();
   const Range any_drag{0.0, 100.0};
-  const Range wind{-30.0, 30.0};
-  auto& v = c.vehicle;
-  auto& a = c.attitude;
   visit("mass_kg", v.mass_kg, "kg", "mass of the vehicle", positive);
   visit("inertia_xx_kg_m2", v.inertia_xx_kg_m2, "kg m^2", "moment of inertia about x", positive);
   visit("inertia_yy_kg_m2", v.inertia_yy_kg_m2, "kg m^2", "moment of inertia about y", positive);
@@ -72,6 +70,11 @@ void describe(Self& c, Visitor&& visit) {
   visit("linear_drag_z_kg_s", v.linear_drag_z_kg_s, "kg/s", "rotor drag along body z", any_drag);
   visit("quadratic_drag_kg_m", v.quadratic_drag_kg_m, "kg/m",
         "body drag, for the speed through the air squared", any_drag);
+}
+
+template <typename Self, typename Visitor>
+requires std::same_as<std::remove_const_t<Self>, AttitudeGains>
+void describe(Self& a, Visitor&& visit) {
   visit("attitude_tilt_1_s2", a.tilt_1_s2, "1/s^2",
         "onboard loop: angular acceleration for a roll or pitch error", Range::positive(1e4));
   visit("attitude_tilt_rate_1_s", a.tilt_rate_1_s, "1/s",
@@ -80,6 +83,14 @@ void describe(Self& c, Visitor&& visit) {
         "onboard loop: angular acceleration for a yaw error", Range::positive(1e4));
   visit("attitude_yaw_rate_1_s", a.yaw_rate_1_s, "1/s",
         "onboard loop: angular acceleration for a yaw rate error", Range::positive(200));
+}
+
+template <typename Self, typename Visitor>
+requires std::same_as<std::remove_const_t<Self>, Config>
+void describe(Self& c, Visitor&& visit) {
+  const Range wind{-30.0, 30.0};
+  describe(c.vehicle, visit);
+  describe(c.attitude, visit);
   visit("command_timeout_s", c.command_timeout_s, "s",
         "without a command for this long, the vehicle brakes and holds its position by itself",
         Range{0.01, 10.0});
@@ -87,6 +98,10 @@ void describe(Self& c, Visitor&& visit) {
         Range{0.05, 1.2});
   visit("failsafe_hold_s", c.failsafe_hold_s, "s",
         "how long it holds, still without commands, before it lands by itself", Range{0.0, 3600.0});
+  visit("landing", c.landing, "",
+        "it lands where the map shows the way straight down free (map), as if it were free "
+        "everywhere (anywhere), or never",
+        OneOf{{"map", "anywhere", "never"}});
   visit("land_speed_m_s", c.land_speed_m_s, "m/s", "its descent", Range{0.05, 2.0});
   visit("land_height_m", c.land_height_m, "m",
         "height in the map at which a landing ends: the ground, plus the legs", Anything{});

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 
 #include "goshawk/conversions/vehicle.hpp"
 #include "goshawk/runtime/component.hpp"
 #include "goshawk/runtime/lock_step.hpp"
+#include "goshawk/runtime/map_subscription.hpp"
 #include "goshawk/runtime/stage_reporter.hpp"
 #include "goshawk/simulator/quadrotor.hpp"
 #include "tf2_msgs.h"
@@ -118,19 +120,30 @@ class PlantComponent : public runtime::Component {
   // Who lost control says so, once each time.
   void report_control() {
     const Control control = quadrotor_.control();
-    if (control != said_ && control == Control::landing) {
-      reporter_.fault(fail(ErrorCode::tracking_lost, "still no commands: landing at " +
-                                                         to_text(quadrotor_.state().position_map)));
-    } else if (control != said_ && control == Control::failsafe) {
+    const std::string place = to_text(quadrotor_.state().position_map) + " m";
+    if (control == Control::landing && said_ != control) {
+      reporter_.fault(fail(ErrorCode::tracking_lost, "still no commands: landing at " + place));
+    } else if (control == Control::failsafe && said_ == Control::commanded) {
       reporter_.fault(fail(ErrorCode::tracking_lost,
                            "commands stopped coming: braking and holding; landing after " +
-                               std::to_string(config_.plant.failsafe_hold_s) + " s"));
+                               std::to_string(config_.plant.failsafe_hold_s) +
+                               " s, where that is free"));
     }
     said_ = control;
+    const Error& why = quadrotor_.not_landing();
+    if (why.code != ErrorCode::ok && why.message != said_why_) {
+      reporter_.fault(fail(why.code, "still no commands, and instead of landing it holds at " +
+                                         place + ": " + why.message));
+    }
+    said_why_ = why.message;
   }
 
   void publish_slow() {
     report_control();
+    // Not before: a large map would keep the plant waiting while it is taken in.
+    if (quadrotor_.needs_map() && !map_) {
+      map_.emplace(node_, reporter_, [this](const auto& grid) { quadrotor_.set_map(grid); });
+    }
     goshawk_msgs::msg::VehicleStatus status;
     status.header(conversions::make_header(last_ns_));
     status.failsafe(quadrotor_.control() != Control::commanded);
@@ -160,7 +173,9 @@ class PlantComponent : public runtime::Component {
   runtime::Publisher<goshawk_msgs::msg::VehicleStatus> status_;
   runtime::Publisher<tf2_msgs::msg::TFMessage> tf_;
   nav_msgs::msg::Odometry odometry_message_;
+  std::optional<runtime::MapSubscription> map_;
   Control said_ = Control::failsafe;
+  std::string said_why_;
   std::int64_t last_ns_ = 0;
   std::int64_t command_ns_ = 0;
   std::int64_t complained_ns_ = 0;

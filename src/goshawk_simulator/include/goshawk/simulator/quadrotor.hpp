@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "goshawk/core/landing.hpp"
 #include "goshawk/simulator/config.hpp"
 #include "goshawk/simulator/mixer.hpp"
 #include "goshawk/simulator/plant_model.hpp"
@@ -16,8 +17,9 @@ enum class Control { commanded, failsafe, landing };
 
 /// A simulated quadrotor with its autopilot: plant, onboard attitude loop and failsafe, all at
 /// 1 kHz. It hovers from the start; commands take over; when none came for command_timeout_s it
-/// brakes and hovers where that ends, and after failsafe_hold_s it lands there, until commands come
-/// again. Before the first command it only hovers. Same calls, same bits.
+/// brakes and hovers where that ends, and after failsafe_hold_s it lands there, where the map shows
+/// the way down free, until commands come again. Before the first command it only hovers. Same
+/// calls, same bits.
 ///
 ///     auto quadrotor = Quadrotor::create(config);
 ///     quadrotor->reset({3, 0, 1}, 0.0);
@@ -43,6 +45,16 @@ class Quadrotor {
   /// unit length (1e-3), or a body rate is above 100 rad/s
   Status command(const ThrustAttitude& command);
 
+  /// What a landing looks at; needs_map() tells when. Where a newer one shows the way down blocked,
+  /// a landing stops, and the vehicle hovers where it is. @pre grid->check() ok
+  void set_map(std::shared_ptr<const VoxelGrid> grid);
+  /// Commands are lost, and there is no map yet.
+  bool needs_map() const {
+    return control_ == Control::failsafe && was_commanded_ && guard_.needs_map();
+  }
+  /// Why it holds though it should have landed by now; ok where that is not so.
+  const Error& not_landing() const { return not_landing_; }
+
   /// Lets time pass in whole steps of 1 ms. What is left of dt_s is kept, in nanoseconds, for the
   /// next call: a thousand calls of 0.0004 s are 400 steps.
   /// @param dt_s [s] in [0, 3600], rounded to a nanosecond @return invalid_input else
@@ -66,6 +78,7 @@ class Quadrotor {
   void step();
   ThrustAttitude onboard_target();
   void watch_commands();
+  void try_to_land();
 
   Config config_;
   std::unique_ptr<PlantModel> plant_;
@@ -74,6 +87,8 @@ class Quadrotor {
   Wind wind_;
   Sensor sensor_;
   PositionHold hold_;
+  LandingGuard guard_;
+  Error not_landing_{ErrorCode::ok, ""};
   ThrustAttitude command_;
   Control control_ = Control::failsafe;
   std::int64_t time_ns_ = 0;

@@ -39,19 +39,16 @@ struct Config {
   double odometry_timeout_s = 0.1;
   double brake_acceleration_m_s2 = 2.0;
   double navigator_timeout_s = 2.0;
+  std::string landing = "map";
   double land_after_s = 10.0;
   double land_speed_m_s = 0.3;
   double land_height_m = 0.1;
 };
 
+namespace detail {
+
 template <typename Self, typename Visitor>
-requires std::same_as<std::remove_const_t<Self>, Config>
-void describe(Self& c, Visitor&& visit) {
-  visit("controller", c.controller, "",
-        "pd: thesis, PD with feedforward; geometric: on SE(3), after Lee, Leok, McClamroch 2010",
-        OneOf{{"pd", "geometric"}});
-  visit("yaw", c.yaw, "", "plan: the trajectory's yaw; keep: the yaw at the first odometry",
-        OneOf{{"plan", "keep"}});
+void describe_vehicle(Self& c, Visitor& visit) {
   visit("mass_kg", c.mass_kg, "kg", "mass of the vehicle", Range::positive(1000.0));
   visit("min_thrust_n", c.min_thrust_n, "N", "least collective thrust that is asked for",
         Range{0.0, 1e5});
@@ -65,6 +62,10 @@ void describe(Self& c, Visitor&& visit) {
   visit("actuation_delay_s", c.actuation_delay_s, "s",
         "feedforward is taken this far ahead: lag of motors and attitude loop, and transport",
         Range{0.0, 0.3});
+}
+
+template <typename Self, typename Visitor>
+void describe_gains(Self& c, Visitor& visit) {
   visit("position_xy_1_s2", c.position_xy_1_s2, "1/s^2",
         "acceleration for a horizontal position error", Range::positive(100.0));
   visit("position_z_1_s2", c.position_z_1_s2, "1/s^2", "acceleration for a height error",
@@ -85,6 +86,10 @@ void describe(Self& c, Visitor&& visit) {
         Range::positive(10.0));
   visit("max_body_rate_rad_s", c.max_body_rate_rad_s, "rad/s",
         "largest body rate that is asked for beforehand", Range::positive(50.0));
+}
+
+template <typename Self, typename Visitor>
+void describe_safety(Self& c, Visitor& visit) {
   visit("start_tolerance_m", c.start_tolerance_m, "m",
         "how far from the vehicle, or from the trajectory flown, a new one may begin",
         Range::positive(10.0));
@@ -104,6 +109,10 @@ void describe(Self& c, Visitor&& visit) {
   visit("navigator_timeout_s", c.navigator_timeout_s, "s",
         "a navigator that was heard once and then is silent for this long is lost",
         Range{0.1, 3600.0});
+  visit("landing", c.landing, "",
+        "without a navigator: land where the map shows the way straight down free (map), as if it "
+        "were free everywhere (anywhere), or never",
+        OneOf{{"map", "anywhere", "never"}});
   visit("land_after_s", c.land_after_s, "s",
         "without a navigator: how long the vehicle holds at rest before it lands",
         Range{0.0, 3600.0});
@@ -111,6 +120,21 @@ void describe(Self& c, Visitor&& visit) {
         Range{0.05, 2.0});
   visit("land_height_m", c.land_height_m, "m",
         "height in the map at which a landing ends: the ground, plus the legs", Anything{});
+}
+
+}  // namespace detail
+
+template <typename Self, typename Visitor>
+requires std::same_as<std::remove_const_t<Self>, Config>
+void describe(Self& c, Visitor&& visit) {
+  visit("controller", c.controller, "",
+        "pd: thesis, PD with feedforward; geometric: on SE(3), after Lee, Leok, McClamroch 2010",
+        OneOf{{"pd", "geometric"}});
+  visit("yaw", c.yaw, "", "plan: the trajectory's yaw; keep: the yaw at the first odometry",
+        OneOf{{"plan", "keep"}});
+  detail::describe_vehicle(c, visit);
+  detail::describe_gains(c, visit);
+  detail::describe_safety(c, visit);
 }
 
 /// @return invalid_parameter with every fault: out of range, and a vehicle whose thrust bounds do

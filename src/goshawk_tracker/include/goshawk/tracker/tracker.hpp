@@ -1,8 +1,10 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
+#include "goshawk/core/landing.hpp"
 #include "goshawk/tracker/committed_trajectory.hpp"
 #include "goshawk/tracker/position_controller.hpp"
 #include "goshawk/tracker/reference.hpp"
@@ -70,13 +72,21 @@ class Tracker {
     return step(state, now_ns, now_ns);
   }
 
+  /// What a landing looks at; needs_map() tells when. Where a newer one shows the way down blocked,
+  /// a landing stops, and holds where it is.
+  /// @pre grid->check() ok
+  void set_map(std::shared_ptr<const VoxelGrid> grid, std::int64_t now_ns);
+  /// The navigator is lost, the vehicle is at rest, and there is no map yet.
+  bool needs_map() const;
+
   /// The navigator lives. Only one that was heard can be missed; a landing ends when it is back.
   void heard_navigator(std::int64_t now_ns);
 
   /// What must be noticed when nothing comes in. Odometry older than its timeout is lost: the
   /// reference brakes along its path, and the vehicle, which gets no command, holds by itself. A
   /// silent navigator is lost: what is committed is flown to its end and held there; after
-  /// land_after_s at rest the vehicle lands. Each is a fault with a code. Included in step().
+  /// land_after_s at rest the vehicle lands where the map shows the way down free, else it holds
+  /// until a map does. Each is a fault with a code. Included in step().
   void watch(std::int64_t now_ns);
 
   /// As of the last step() or watch().
@@ -94,7 +104,9 @@ class Tracker {
   void watch_error(std::int64_t now_ns);
   void watch_odometry(std::int64_t now_ns);
   void watch_navigator(std::int64_t now_ns);
+  void try_to_land(std::int64_t now_ns);
   void land(std::int64_t now_ns);
+  void stay(const Error& why, const Vec3& position_map);
   void lose(std::int64_t now_ns, const std::string& why);
   std::uint64_t followed_id() const;
   double turn(std::int64_t now_ns);
@@ -119,7 +131,9 @@ class Tracker {
   Error deserted_{ErrorCode::ok, ""};     // by the navigator, until it is heard again
   std::optional<std::int64_t> heard_ns_;  // the navigator's last sign of life
   std::optional<std::int64_t> rest_since_ns_;  // the reference's, for good
+  LandingGuard guard_;
   bool landing_ = false;
+  bool stays_ = false;  // the newest map, or none, does not allow it to land
   double error_m_ = 0.0;
   double squared_error_m2_ = 0.0;
   double max_error_m_ = 0.0;

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "goshawk/core/grid_geometry.hpp"
+
+namespace goshawk {
+
+/// May the vehicle go straight down from where it hovers, and stand on the ground there? Every
+/// voxel of the vertical line must be free and known, whatever the policy for unknown space, down
+/// to what the ground itself blocks. The ground is all that is occupied in the layer of voxels
+/// that contains land_height_m, and below; grown, it blocks ceil(inflation / resolution) layers
+/// more, and hides the sides of what is low: something that rises above that layer by h is seen
+/// within sqrt(r^2 - (r - h)^2) of the line, r being the inflation, and within r where h >= r.
+///
+/// @param grid as the planning stages see it @pre grid.check() ok
+/// @param from_map [m] where the vehicle's centre hovers
+/// @param land_height_m [m] map height of the centre on the ground
+/// @return goal_occupied or goal_unknown with the place that is in the way; goal_outside: the map
+///         does not reach from there to the ground; invalid_input: not finite
+Status check_way_down(const VoxelGrid& grid, const Vec3& from_map, double land_height_m);
+
+/// Decides whether a vehicle that lost its pilot may land where it hovers.
+///
+///     LandingGuard guard("map", land_height_m);
+///     guard.set_map(grid);                                  // whenever one comes
+///     if (auto answer = guard.check(position)) land(); else hold(answer.error());
+class LandingGuard {
+ public:
+  /// @param rule "map": where the newest map shows the way down free; "anywhere": the ground is
+  ///        known to be free everywhere, no map is asked; "never" @param land_height_m [m]
+  /// Throws std::invalid_argument for another rule.
+  LandingGuard(const std::string& rule, double land_height_m);
+
+  void set_map(std::shared_ptr<const VoxelGrid> grid) { grid_ = std::move(grid); }
+  /// Without a map it cannot decide.
+  bool needs_map() const { return rule_ == Rule::map && grid_ == nullptr; }
+
+  /// @return all of check_way_down(); no_map where none has come; cancelled where it never lands
+  Status check(const Vec3& from_map) const;
+
+ private:
+  enum class Rule { map, anywhere, never };
+  Rule rule_;
+  double land_height_m_;
+  std::shared_ptr<const VoxelGrid> grid_;
+};
+
+}  // namespace goshawk

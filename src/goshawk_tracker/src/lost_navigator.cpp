@@ -1,0 +1,85 @@
+#include <algorithm>
+
+#include "clock_time.hpp"
+#include "goshawk/tracker/tracker.hpp"
+
+// What the tracker does without a navigator: it holds, then lands where that is known to be safe.
+
+namespace goshawk::tracker {
+
+void Tracker::heard_navigator(std::int64_t now_ns) {
+  if (!within_bound(now_ns)) return;
+  heard_ns_ = now_ns;
+  deserted_ = {ErrorCode::ok, ""};
+  stays_ = false;
+  if (!landing_) return;
+  brake(now_ns);  // it may be needed where it is
+  landing_ = false;
+}
+
+void Tracker::set_map(std::shared_ptr<const VoxelGrid> grid, std::int64_t now_ns) {
+  guard_.set_map(std::move(grid));
+  stays_ = false;  // another map, another answer
+  if (!landing_ || reference_.at_rest(now_ns)) return;
+  const Vec3 place = reference_.at(now_ns).position;
+  const Status answer = guard_.check(place);
+  if (answer) return;
+  brake(now_ns);
+  landing_ = false;
+  stay(answer.error(), place);
+}
+
+bool Tracker::needs_map() const {
+  return deserted_.code != ErrorCode::ok && rest_since_ns_ && guard_.needs_map();
+}
+
+void Tracker::watch_navigator(std::int64_t now_ns) {
+  const bool rests = reference_.at_rest(now_ns) && queue_.empty();
+  if (!rests) rest_since_ns_.reset();
+  if (rests && !rest_since_ns_) rest_since_ns_ = now_ns;
+  if (!heard_ns_ || seconds(*heard_ns_, now_ns) <= config_.navigator_timeout_s) return;
+  if (deserted_.code == ErrorCode::ok) {
+    deserted_ = fail(ErrorCode::stage_silent,
+                     "the navigator is silent for " + number(config_.navigator_timeout_s) +
+                         " s: what is committed is flown to its end and held there; landing " +
+                         number(config_.land_after_s) + " s later, where that is free");
+  }
+  if (landing_ || stays_ || !rests) return;
+  if (seconds(std::max(*rest_since_ns_, *heard_ns_), now_ns) >= config_.land_after_s) {
+    try_to_land(now_ns);
+  }
+}
+
+void Tracker::try_to_land(std::int64_t now_ns) {
+  const Vec3 place = reference_.at(now_ns).position;
+  if (auto answer = guard_.check(place); !answer) return stay(answer.error(), place);
+  land(now_ns);
+}
+
+// Until another map comes, or the navigator is back.
+void Tracker::stay(const Error& why, const Vec3& position_map) {
+  stays_ = true;
+  deserted_ = fail(why.code, "the navigator is lost, and instead of landing the vehicle holds at " +
+                                 to_text(position_map) + " m: " + why.message);
+}
+
+// Straight down, at rest at both ends: a quintic's top speed is 15/8 of its mean.
+void Tracker::land(std::int64_t now_ns) {
+  landing_ = true;
+  const FlatState from{.position = reference_.at(now_ns).position};
+  FlatState to = from;
+  to.position.z() = config_.land_height_m;
+  const double height_m = from.position.z() - to.position.z();
+  deserted_ = fail(ErrorCode::stage_silent,
+                   "the navigator is lost: landing below " + to_text(from.position) + " m");
+  if (height_m < 1e-3) return;
+  CommittedTrajectory down;
+  down.id = followed_id();
+  down.trajectory.pieces = {
+      BezierPiece::between(from, to, 15.0 / 8.0 * height_m / config_.land_speed_m_s)};
+  down.start_time_ns = now_ns;
+  down.yaw_rad = yaw_rad_;
+  reference_ = Reference::follow(std::move(down));
+}
+
+}  // namespace goshawk::tracker

@@ -1,0 +1,65 @@
+// Opens Foxglove Studio as `goshawk view --foxglove` serves it, in headless Chromium:
+// node studio_page_test.mjs URL recording|live SCREENSHOT.png
+import {check, end, launch} from './browser.mjs';
+
+const [url, kind, screenshot] = process.argv.slice(2);
+const kPatience = 120000;  // [ms] a hang, not slowness: it draws without a graphics card
+const browser = await launch();
+const page = await (await browser.newContext({viewport: {width: 1440, height: 900}})).newPage();
+page.setDefaultTimeout(kPatience);
+const strange = [], refused = [];
+page.on('request', request => {
+  const {protocol, hostname} = new URL(request.url());
+  if (/^(http|ws)/.test(protocol) && hostname !== '127.0.0.1') strange.push(request.url());
+});
+page.on('response', response => { if (response.status() >= 400) refused.push(response.url()); });
+const errors = [];
+page.on('pageerror', error => errors.push(String(error)));
+const there = text => page.getByText(text).first().waitFor().then(() => true, () => false);
+
+// How many colours the 3D panel has, from the picture as it is seen.
+async function colors() {
+  const canvas = page.locator('canvas').first();
+  const png = (await canvas.screenshot({timeout: kPatience})).toString('base64');
+  return page.evaluate(async data => {
+    const image = new Image();
+    image.src = 'data:image/png;base64,' + data;
+    await image.decode();
+    const c = document.createElement('canvas');
+    c.width = image.width;
+    c.height = image.height;
+    const g = c.getContext('2d');
+    g.drawImage(image, 0, 0);
+    const pixels = new Uint32Array(g.getImageData(0, 0, c.width, c.height).data.buffer);
+    return new Set(pixels).size;
+  }, png);
+}
+
+await page.goto(url, {waitUntil: 'commit'});
+check(await there('tracking error [m]'), 'our layout is loaded');
+check(await there('Send this goal'), 'with a panel that sends a goal');
+if (kind === 'recording') {
+  // A click into the time bar jumps there, once the recording is open: to the flight's middle.
+  const flying = page.getByText('"flying"').first();
+  for (let k = 0; k < kPatience / 2000 && !await flying.isVisible(); ++k) {
+    await page.mouse.click(700, 843);
+    await page.waitForTimeout(2000);
+  }
+  check(await flying.isVisible(), 'a jump to the middle finds it flying');
+} else {
+  check(await there('request_id'), 'live messages come');
+  await page.getByRole('button', {name: 'Send this goal'}).click();
+  check(await there('"flying"'), 'the goal that the page sends makes it fly');
+}
+let seen = 0;
+for (let k = 0; k < 20 && seen < 800; ++k) {
+  await page.waitForTimeout(500);
+  seen = await colors();
+}
+check(seen >= 800, `map, corridor, trajectory and vehicle are drawn: ${seen} colours`);
+if (screenshot) await page.screenshot({path: screenshot, timeout: kPatience});
+check(strange.length === 0, `nothing from elsewhere is asked for: ${strange}`);
+check(refused.length === 0, `all that it asks for is served: ${refused}`);
+check(errors.length === 0, `no errors: ${errors}`);
+await browser.close();
+end();

@@ -1,0 +1,184 @@
+#include "recorded_flight.hpp"
+
+#include "goshawk/conversions/geometry.hpp"
+#include "goshawk/conversions/grid.hpp"
+#include "goshawk/conversions/plan.hpp"
+#include "goshawk/conversions/vehicle.hpp"
+#include "goshawk/core/grid_update.hpp"
+#include "goshawk/runtime/message_type.hpp"
+#include "goshawk/viewer_bridge/octomap_voxels.hpp"
+#include "octomap_msgs.h"
+
+namespace goshawk::viewer {
+namespace {
+
+namespace msg = goshawk_msgs::msg;
+
+constexpr std::size_t kMostComplaints = 20;
+
+/// @return invalid_input where the bytes are no such message
+template <typename Message>
+Result<Message> decoded(const std::vector<unsigned char>& bytes) {
+  Message message;
+  if (!runtime::decode(bytes, message)) {
+    return fail(ErrorCode::invalid_input, "its bytes are no such message");
+  }
+  return message;
+}
+
+/// Whether "/uav1/odom" is an "odom".
+bool is_called(const std::string& topic, const std::string& name) {
+  return topic == name || topic.ends_with("/" + name);
+}
+
+double seconds(std::int64_t ns) { return double(ns) * 1e-9; }
+
+}  // namespace
+
+std::map<std::uint16_t, RecordedFlight::Take> RecordedFlight::choose(
+    const recording::Reader& reader) {
+  struct Wanted {
+    const char* name;
+    const char* type;
+    Take take;
+  };
+  static constexpr Wanted kWanted[] = {
+      {"odom", "nav_msgs/msg/Odometry", &RecordedFlight::take_odometry},
+      {"committed_trajectory", "goshawk_msgs/msg/CommittedTrajectory",
+       &RecordedFlight::take_commitment},
+      {"path", "goshawk_msgs/msg/Path", &RecordedFlight::take_path},
+      {"octomap_binary", "octomap_msgs/msg/Octomap", &RecordedFlight::take_octomap},
+      {"map/voxels", "goshawk_msgs/msg/VoxelGrid", &RecordedFlight::take_grown},
+      {"map/voxels/updates", "goshawk_msgs/msg/VoxelGridUpdate", &RecordedFlight::take_update}};
+  std::map<std::uint16_t, Take> chosen;
+  for (const auto& wanted : kWanted) {
+    const recording::Channel* first = nullptr;
+    for (const auto& [id, channel] : reader.channels()) {
+      const auto* schema = reader.schema_of(channel);
+      if (!schema || schema->name != wanted.type || !is_called(channel.topic, wanted.name)) continue;
+      if (!first || channel.topic < first->topic) first = &channel;
+    }
+    if (first) chosen[first->id] = wanted.take;
+  }
+  return chosen;
+}
+
+Result<RecordedFlight> RecordedFlight::read(recording::Reader& reader) {
+  RecordedFlight flight;
+  const auto chosen = choose(reader);
+  recording::ReadOptions options;
+  options.channels.emplace();
+  for (const auto& [id, take] : chosen) options.channels->insert(id);
+  Bytes bytes;
+  const auto status = reader.read(options, [&](const recording::MessageView& m) {
+    bytes.assign(m.data.begin(), m.data.end());
+    const auto taken = (flight.*chosen.at(m.channel_id))(bytes);
+    if (!taken && flight.complaints_.size() < kMostComplaints) {
+      flight.complaints_.push_back(reader.channels().at(m.channel_id).topic + ": " +
+                                   taken.error().message);
+    }
+    return true;
+  });
+  if (!status) return status.error();
+  if (flight.is_empty()) {
+    return fail(ErrorCode::invalid_input,
+                "there is nothing in it that this page draws (odom, committed_trajectory, "
+                "octomap_binary, map/voxels): goshawk view --foxglove shows any topic");
+  }
+  for (const auto& sentence : reader.complaints()) flight.complaints_.push_back(sentence);
+  return flight;
+}
+
+Status RecordedFlight::take_odometry(const Bytes& bytes) {
+  const auto m = decoded<nav_msgs::msg::Odometry>(bytes);
+  if (!m) return m.error();
+  const auto state = conversions::from_msg(*m);
+  if (!state) return state.error();
+  const std::int64_t stamp_ns = conversions::to_ns(m->header().stamp());
+  if (!flown_.empty() && stamp_ns < flown_.back().stamp_ns) {
+    return fail(ErrorCode::invalid_input, "time goes backwards; what comes again is left out");
+  }
+  flown_.push_back(
+      {stamp_ns, {0.0, state->position_map, state->velocity_map, state->q_map_base}});
+  return success();
+}
+
+Status RecordedFlight::take_commitment(const Bytes& bytes) {
+  const auto m = decoded<msg::CommittedTrajectory>(bytes);
+  if (!m) return m.error();
+  auto received = conversions::from_msg(m->trajectory());
+  if (!received) return received.error();
+  Committed committed{received->request.id, conversions::to_ns(m->start_time()),
+                      received->request.limits, {}};
+  committed.leg.trajectory = std::move(received->trajectory);
+  committed.leg.corridor = std::move(received->polytopes);
+  committed_.push_back(std::move(committed));
+  return success();
+}
+
+Status RecordedFlight::take_path(const Bytes& bytes) {
+  const auto m = decoded<msg::Path>(bytes);
+  if (!m) return m.error();
+  auto waypoints = conversions::waypoints_of(*m);
+  if (!waypoints) return waypoints.error();
+  auto& leg = paths_[m->request().id()];
+  leg.raw_path_map = conversions::from_msg(m->raw());
+  leg.waypoints_map = *std::move(waypoints);
+  return success();
+}
+
+Status RecordedFlight::take_octomap(const Bytes& bytes) {
+  const auto m = decoded<octomap_msgs::msg::Octomap>(bytes);
+  if (!m) return m.error();
+  auto grid = viewer_bridge::octomap_voxels(
+      {reinterpret_cast<const std::uint8_t*>(m->data().data()), m->data().size()}, m->resolution());
+  if (!grid) return grid.error();
+  obstacles_ = *std::move(grid);
+  return success();
+}
+
+Status RecordedFlight::take_grown(const Bytes& bytes) {
+  const auto m = decoded<msg::VoxelGrid>(bytes);
+  if (!m) return m.error();
+  auto grid = conversions::from_msg(*m);
+  if (!grid) return grid.error();
+  grown_ = *std::move(grid);
+  return success();
+}
+
+Status RecordedFlight::take_update(const Bytes& bytes) {
+  const auto m = decoded<msg::VoxelGridUpdate>(bytes);
+  if (!m) return m.error();
+  const auto update = conversions::from_msg(*m);
+  if (!update) return update.error();
+  // One that does not follow is left out, as stages do: the whole map comes again soon after.
+  if (grown_ && grown_->version == update->from_version) return apply(*grown_, *update);
+  return success();
+}
+
+flight_report::Flight RecordedFlight::flight(const std::string& title) const {
+  flight_report::Flight flight;
+  flight.title = title;
+  flight.obstacles = obstacles_ ? &*obstacles_ : nullptr;
+  flight.grown = grown_ ? &*grown_ : nullptr;
+  std::int64_t origin_ns = 0;
+  if (!committed_.empty()) origin_ns = committed_.front().start_ns;
+  if (!flown_.empty()) origin_ns = flown_.front().stamp_ns;
+  for (const auto& committed : committed_) {
+    auto leg = committed.leg;
+    if (const auto path = paths_.find(committed.request_id); path != paths_.end()) {
+      leg.raw_path_map = path->second.raw_path_map;
+      leg.waypoints_map = path->second.waypoints_map;
+    }
+    leg.start_t_s = seconds(committed.start_ns - origin_ns);
+    flight.limits = committed.limits;
+    flight.legs.push_back(std::move(leg));
+  }
+  for (const auto& [stamp_ns, sample] : flown_) {
+    flight.flown.push_back(sample);
+    flight.flown.back().t_s = seconds(stamp_ns - origin_ns);
+  }
+  return flight;
+}
+
+}  // namespace goshawk::viewer

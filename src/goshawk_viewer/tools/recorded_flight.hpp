@@ -1,0 +1,57 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+
+#include "goshawk/core/grid_geometry.hpp"
+#include "goshawk/flight_report/flight.hpp"
+#include "goshawk/recording/reader.hpp"
+
+namespace goshawk::viewer {
+
+/// What a page draws of a recording: the newest maps, every committed trajectory with its path, and
+/// the track. Of several vehicles, the one whose topic's name comes first.
+class RecordedFlight {
+ public:
+  /// @return io_failed where the file cannot be read; invalid_input where it holds nothing to draw
+  static Result<RecordedFlight> read(recording::Reader& reader);
+
+  /// @return refers to the maps of this object
+  flight_report::Flight flight(const std::string& title) const;
+
+  /// What could not be used, a sentence each.
+  const std::vector<std::string>& complaints() const { return complaints_; }
+
+ private:
+  using Bytes = std::vector<unsigned char>;
+  using Take = Status (RecordedFlight::*)(const Bytes&);
+  struct Committed {
+    std::uint64_t request_id = 0;
+    std::int64_t start_ns = 0;
+    Limits limits;
+    flight_report::Leg leg;
+  };
+  struct State {
+    std::int64_t stamp_ns = 0;
+    flight_report::FlownSample sample;
+  };
+
+  static std::map<std::uint16_t, Take> choose(const recording::Reader& reader);
+  bool is_empty() const { return !obstacles_ && !grown_ && committed_.empty() && flown_.empty(); }
+  Status take_odometry(const Bytes& bytes);
+  Status take_commitment(const Bytes& bytes);
+  Status take_path(const Bytes& bytes);
+  Status take_octomap(const Bytes& bytes);
+  Status take_grown(const Bytes& bytes);
+  Status take_update(const Bytes& bytes);
+
+  std::optional<VoxelGrid> obstacles_;
+  std::optional<VoxelGrid> grown_;
+  std::map<std::uint64_t, flight_report::Leg> paths_;  // by their requests
+  std::vector<Committed> committed_;
+  std::vector<State> flown_;
+  std::vector<std::string> complaints_;
+};
+
+}  // namespace goshawk::viewer
