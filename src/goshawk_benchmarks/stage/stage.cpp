@@ -8,6 +8,7 @@
 
 #include "common/child.hpp"
 #include "common/report.hpp"
+#include "goshawk/runtime/private_domain.hpp"
 #include "stage/feeder.hpp"
 
 namespace {
@@ -120,7 +121,7 @@ int main(int argc, char** argv) {
   app.add_flag("--json", options.json, "one JSON object");
   CLI11_PARSE(app, argc, argv);
   if (options.quick) feed_options.count = std::min(feed_options.count, 50);
-  feed_options.domain = private_domain();
+  feed_options.domain = goshawk::runtime::hold_private_domain();
   try {
     return run(feed_options, against, options);
   } catch (const std::exception& e) {
