@@ -73,9 +73,4 @@ std::string this_program() {
   return std::filesystem::read_symlink("/proc/self/exe");
 }
 
-int private_domain(int k) {
-  constexpr int kFirst = 101, kMany = 130;
-  return kFirst + (int(getpid()) * 7 + k) % kMany;
-}
-
 }  // namespace goshawk::bench

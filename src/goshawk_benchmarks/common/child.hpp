@@ -28,8 +28,4 @@ class Child {
 /// The program that runs.
 std::string this_program();
 
-/// A DDS domain that other runs at the same time hardly use; never the user's own.
-/// @param k parts domains of one run
-int private_domain(int k = 0);
-
 }  // namespace goshawk::bench

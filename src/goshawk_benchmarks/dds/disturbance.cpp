@@ -200,7 +200,7 @@ void measure_disturbance(Report& report, int domain) {
       {"one process, and a reader of maps outside", "sm", {"n"}}};
   // In short turns, so that a busy machine disturbs both alike; the quietest turn of each tells
   // what the maps alone do.
-  const int turns = report.options().quick ? 2 : 6;
+  const int turns = report.options().quick ? 1 : 6;
   const double time_s = report.options().quick ? 1.0 : 2.5;
   for (const auto& arrangement : arrangements) {
     Turns of[2];

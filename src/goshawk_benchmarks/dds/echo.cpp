@@ -65,7 +65,8 @@ Asker::Asker(const LinkOptions& options, Member& member)
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
   while (!ask({++number_, 0}, 0.1)) {
-    if (seconds_since(begin_ns) > kEchoWithin_s) throw std::runtime_error("the echo does not answer");
+    if (seconds_since(begin_ns) > kEchoWithin_s)
+      throw std::runtime_error("the echo does not answer");
   }
 }
 

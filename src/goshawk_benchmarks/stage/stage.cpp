@@ -8,6 +8,7 @@
 
 #include "common/child.hpp"
 #include "common/report.hpp"
+#include "goshawk/runtime/private_domain.hpp"
 #include "stage/feeder.hpp"
 
 namespace {
@@ -120,8 +121,8 @@ int main(int argc, char** argv) {
   app.add_flag("--json", options.json, "one JSON object");
   CLI11_PARSE(app, argc, argv);
   if (options.quick) feed_options.count = std::min(feed_options.count, 50);
-  feed_options.domain = private_domain();
   try {
+    feed_options.domain = goshawk::runtime::hold_private_domain();
     return run(feed_options, against, options);
   } catch (const std::exception& e) {
     std::fprintf(stderr, "goshawk bench stage: %s\n", e.what());

@@ -109,6 +109,7 @@ void MapExaminer::take_whole(const msg::VoxelGrid& m) {
   auto grid = conversions::from_msg(m);
   wholes_valid_.check(grid && grid->version > 0, grid ? "it has version 0" : grid.error().message);
   if (!grid) return;
+  whole_version_ = grid->version;
   if (grid_ && grid_->version > grid->version) return;  // an older one, late
   if (grid_ && grid_->version == grid->version) {
     chain_.check(same_bits(*grid_, *grid),
@@ -289,8 +290,7 @@ void MapExaminer::examine_garbage() {
   report_.items.push_back(
       {"lives on after garbage", lives, lives ? "" : "a good cloud changed nothing"});
   // Its updates are compared with the next whole map.
-  const int wholes = wholes_;
-  spin_until(5.0 * options_.timeout_s, [&] { return wholes_ > wholes; });
+  spin_until(5.0 * options_.timeout_s, [&] { return whole_version_ >= grid_->version; });
 }
 
 }  // namespace goshawk::conformance

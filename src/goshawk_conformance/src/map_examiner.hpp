@@ -49,6 +49,7 @@ class MapExaminer {
 
   std::optional<VoxelGrid> grid_;  // the newest, updates applied
   int wholes_ = 0;
+  std::uint64_t whole_version_ = 0;  // of the newest whole map that came
   std::int64_t changed_ns_ = 0;
   std::optional<octomap_msgs::msg::Octomap> octomap_;
   Vec3 vehicle_map_ = Vec3::Zero();

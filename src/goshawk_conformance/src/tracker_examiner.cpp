@@ -17,8 +17,8 @@ using runtime::Qos;
 constexpr std::int64_t kPeriod_ns = 10'000'000;  // of odometry
 constexpr double kMostError_m = 0.25;  // a tracker of whatever kind, in calm air, at 1 m/s
 constexpr double kBegins_in_s = 0.3;
-constexpr double kStall_s = 0.04;  // without odometry or commands: the machine's fault
-constexpr int kAttempts = 6;
+constexpr double kStall_s = 0.08;  // without odometry or commands: the machine's fault
+constexpr int kAttempts = 10;
 const auto kNever = [] { return false; };
 
 // Where a committed trajectory wants the vehicle, by de Casteljau.

@@ -74,15 +74,32 @@ class ForeignSearch {
   MapSubscription map_;
 };
 
+constexpr std::size_t kFaults = std::size_t(Fault::moody) + 1;
+
 /// What must be waited for in vain costs the whole time of it, so that it is short there; all else
 /// comes in its own time, on whatever machine.
-Report examine(Fault fault) {
+conformance::Options options_for(Fault fault) {
   const bool in_vain = fault == Fault::silent || fault == Fault::says_nothing;
-  return conformance_test::examine<ForeignSearch>({.stage = "path_search",
-                                                   .requests = 20,
-                                                   .timeout_s = in_vain ? 0.25 : 10.0,
-                                                   .ready_timeout_s = 20.0},
-                                                  fault, int(fault));
+  return {.stage = "path_search",
+          .requests = 20,
+          .timeout_s = in_vain ? 0.25 : 10.0,
+          .ready_timeout_s = 20.0};
+}
+
+/// All were examined at once, at the first call: they wait most of the time.
+const Report& examine(Fault fault) {
+  static const std::vector<Report> reports = [] {
+    std::vector<Report> all(kFaults);
+    std::vector<std::thread> threads;
+    for (std::size_t k = 0; k < kFaults; ++k) {
+      threads.emplace_back([&all, k] {
+        all[k] = conformance_test::examine<ForeignSearch>(options_for(Fault(k)), Fault(k));
+      });
+    }
+    for (auto& thread : threads) thread.join();
+    return all;
+  }();
+  return reports[std::size_t(fault)];
 }
 
 TEST(Conform, StageWithoutFaultPassesEveryItem) {
@@ -128,7 +145,7 @@ TEST(Conform, StageThatAnswersOtherwiseTheSecondTimeIsNamed) {
 }
 
 TEST(Conform, NobodyThereIsAnError) {
-  const auto ours = join(50);
+  const auto ours = join(runtime::hold_private_domain());
   const auto report = conform(*ours, {.stage = "path_search", .ready_timeout_s = 0.3});
   ASSERT_FALSE(report.ok());
   EXPECT_EQ(report.code(), ErrorCode::stage_silent);

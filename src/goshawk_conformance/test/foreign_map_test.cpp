@@ -116,7 +116,7 @@ class ForeignMap {
 TEST(ConformMapServer, ForeignOnesPassOrFailAtTheRightItems) {
   const auto reports = examine_all<ForeignMap, MapFault>(
       {.stage = "map_server"},
-      {MapFault::none, MapFault::believes_all, MapFault::not_grown, MapFault::broken_chain}, 80);
+      {MapFault::none, MapFault::believes_all, MapFault::not_grown, MapFault::broken_chain});
   EXPECT_THAT(failed(reports[0]), IsEmpty());
   EXPECT_GE(reports[0].items.size(), 15U);
   EXPECT_GT(reports[0].latency_p50_s, 0.0);
@@ -133,7 +133,7 @@ TEST(ConformMapServer, ForeignOnesPassOrFailAtTheRightItems) {
               ElementsAre("updates follow on one another, and lead to the next whole map"));
   // Nothing comes however long it is waited for.
   const auto report =
-      examine<ForeignMap>({.stage = "map_server", .timeout_s = 0.05}, MapFault::only_once, 85);
+      examine<ForeignMap>({.stage = "map_server", .timeout_s = 0.05}, MapFault::only_once);
   EXPECT_THAT(failed(report), Contains("has a map for who comes"));
 }
 

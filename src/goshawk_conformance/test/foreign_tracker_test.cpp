@@ -99,8 +99,7 @@ TEST(ConformTracker, ForeignOnesPassOrFailAtTheRightItems) {
   const auto reports = examine_all<ForeignTracker, TrackerFault>(
       {.stage = "tracker"},
       {TrackerFault::none, TrackerFault::believes_all, TrackerFault::only_hovers,
-       TrackerFault::not_a_number, TrackerFault::talks_on},
-      60);
+       TrackerFault::not_a_number, TrackerFault::talks_on});
   EXPECT_THAT(failed(reports[0]), IsEmpty());
   EXPECT_EQ(reports[0].implementation, "foreign");
   EXPECT_GE(reports[0].items.size(), 20U);

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <unistd.h>
-
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -10,13 +8,13 @@
 
 #include "goshawk/conformance/conform.hpp"
 #include "goshawk/runtime/node.hpp"
+#include "goshawk/runtime/private_domain.hpp"
 
 namespace goshawk::conformance_test {
 
-/// @param offset parts tests of one program
-inline std::unique_ptr<runtime::Context> join(int offset) {
+inline std::unique_ptr<runtime::Context> join(int domain) {
   runtime::ContextOptions options;
-  options.domain = 100 + (int(getpid()) * 7 + offset) % 130;
+  options.domain = domain;
   auto context = runtime::Context::create(options);
   if (!context) throw std::runtime_error(context.error().message);
   return *std::move(context);
@@ -33,12 +31,13 @@ inline std::vector<std::string> failed(const conformance::Report& report) {
 
 /// Examines Stage(node, fault), which runs in a thread and a domain of its own.
 template <typename Stage, typename Fault>
-conformance::Report examine(const conformance::Options& options, Fault fault, int offset) {
-  const auto theirs = join(offset);
+conformance::Report examine(const conformance::Options& options, Fault fault) {
+  const int domain = runtime::hold_private_domain();
+  const auto theirs = join(domain);
   runtime::Node node(*theirs, options.stage);
   const Stage stage(node, fault);
   std::thread thread([&] { node.spin(); });
-  const auto ours = join(offset);
+  const auto ours = join(domain);
   const auto report = conformance::conform(*ours, options);
   node.stop();
   thread.join();
@@ -49,12 +48,11 @@ conformance::Report examine(const conformance::Options& options, Fault fault, in
 /// Several at once: they wait most of the time. @return the reports in the order of the faults
 template <typename Stage, typename Fault>
 std::vector<conformance::Report> examine_all(const conformance::Options& options,
-                                             const std::vector<Fault>& faults, int offset) {
+                                             const std::vector<Fault>& faults) {
   std::vector<conformance::Report> reports(faults.size());
   std::vector<std::thread> threads;
   for (std::size_t k = 0; k < faults.size(); ++k) {
-    threads.emplace_back(
-        [&, k] { reports[k] = examine<Stage>(options, faults[k], offset + int(k)); });
+    threads.emplace_back([&, k] { reports[k] = examine<Stage>(options, faults[k]); });
   }
   for (auto& thread : threads) thread.join();
   return reports;

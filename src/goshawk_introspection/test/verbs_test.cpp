@@ -14,6 +14,7 @@
 #include <thread>
 
 #include "goshawk/runtime/node.hpp"
+#include "goshawk/runtime/private_domain.hpp"
 #include "goshawk_msgs.h"
 #include "std_msgs.h"
 
@@ -29,7 +30,8 @@ using Json = nlohmann::json;
 using Steady = std::chrono::steady_clock;
 
 int domain() {
-  return 100 + int(getpid() % 101);
+  static const int held = goshawk::runtime::hold_private_domain();
+  return held;
 }
 
 struct Outcome {
@@ -288,7 +290,8 @@ TEST_F(Verbs, SayWhenNoMessageComes) {
 
 // Nobody is in this domain.
 int empty_domain() {
-  return 100 + int((getpid() + 50) % 101);
+  static const int held = goshawk::runtime::hold_private_domain();
+  return held;
 }
 
 TEST(VerbsAlone, NeverHangWhereNothingIs) {

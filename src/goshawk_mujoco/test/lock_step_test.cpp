@@ -10,6 +10,7 @@
 #include "goshawk/conversions/plan.hpp"
 #include "goshawk/conversions/vehicle.hpp"
 #include "goshawk/runtime/node.hpp"
+#include "goshawk/runtime/private_domain.hpp"
 #include "goshawk_msgs.h"
 #include "nav_msgs.h"
 #include "stage_process.hpp"
@@ -95,7 +96,8 @@ struct Flown {
 
 Flown fly(const std::string& plant, const std::vector<std::string>& parameters) {
   runtime::ContextOptions options;
-  options.domain = 100 + int(getpid() % 101);
+  static const int domain = runtime::hold_private_domain();
+  options.domain = domain;
   setenv("ROS_DOMAIN_ID", std::to_string(options.domain).c_str(), 1);
   std::vector<std::string> plant_call{plant + ":simulator",
                                       "--ros-args",

@@ -1,14 +1,14 @@
 #pragma once
 
-#include <unistd.h>
-
 #include "goshawk/runtime/node.hpp"
+#include "goshawk/runtime/private_domain.hpp"
 
 namespace goshawk::runtime_test {
 
-/// A domain that the process id picks, so that tests at the same time do not meet.
+/// One for this program, so that tests at the same time do not meet.
 inline int domain() {
-  return 100 + int(getpid() % 101);
+  static const int held = runtime::hold_private_domain();
+  return held;
 }
 
 inline std::unique_ptr<runtime::Context> join(std::vector<std::string> node_names = {}) {
