@@ -2,6 +2,9 @@
 import {createRequire} from 'node:module';
 import {existsSync} from 'node:fs';
 
+// [ms] for what hangs: a busy machine, which draws without a graphics card, may take long.
+export const kPatience = 120000;
+
 /** @return a browser that draws WebGL without a graphics card */
 export async function launch(extra = []) {
   const require = createRequire(process.env.GOSHAWK_NODE_MODULES + '/');
@@ -17,14 +20,15 @@ export async function launch(extra = []) {
 export async function open(browser, url, size = {width: 1440, height: 900}) {
   const context = await browser.newContext({viewport: size, deviceScaleFactor: 1});
   const page = await context.newPage();
+  page.setDefaultTimeout(kPatience);
   const complaints = [];
   page.on('console', message => {
     if (message.type() === 'error') complaints.push(message.text());
   });
   page.on('pageerror', error => complaints.push(String(error)));
   page.on('requestfailed', request => complaints.push('cannot load ' + request.url()));
-  await page.goto(url);
-  await page.waitForFunction(() => window.goshawk !== undefined, null, {timeout: 20000});
+  await page.goto(url, {timeout: kPatience});
+  await page.waitForFunction(() => window.goshawk !== undefined, null, {timeout: kPatience});
   return {page, complaints};
 }
 

@@ -1,6 +1,6 @@
 // Opens a flight's page in headless Chromium: node flight_page_test.mjs FLIGHT.html SCREENSHOT.png
 import {pathToFileURL} from 'node:url';
-import {check, end, launch, open} from './browser.mjs';
+import {check, end, kPatience, launch, open} from './browser.mjs';
 
 const [file, screenshot] = process.argv.slice(2);
 const url = pathToFileURL(file).href;
@@ -43,7 +43,7 @@ async function lookAtIt() {
   await slide(0.2);
   await page.click('#play');
   const ended = await page.waitForFunction(() => goshawk.now >= goshawk.end && !goshawk.playing, null,
-                                           {timeout: 20000}).then(() => true, () => false);
+                                           {timeout: kPatience}).then(() => true, () => false);
   check(ended, 'it plays to the end and stops');
 
   const legend = await page.evaluate(() => {

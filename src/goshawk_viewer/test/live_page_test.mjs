@@ -1,17 +1,17 @@
 // Opens the live page in headless Chromium and flies from it, while others misbehave:
 // node live_page_test.mjs URL BRIDGE X Y Z SCREENSHOT.png
-import {check, end, launch, open} from './browser.mjs';
+import {check, end, kPatience, launch, open} from './browser.mjs';
 
 const [url, bridge, x, y, z, screenshot] = process.argv.slice(2);
 const goal = [x, y, z].map(Number);
 const browser = await launch();
 const {page, complaints} = await open(browser, url);
-const wait = (condition, ms, argument = null) =>
-    page.waitForFunction(condition, argument, {timeout: ms}).then(() => true, () => false);
+const wait = condition =>
+    page.waitForFunction(condition, null, {timeout: kPatience}).then(() => true, () => false);
 
-check(await wait(() => goshawk.view.maps.obstacles && goshawk.view.maps.grown && goshawk.pose, 20000),
+check(await wait(() => goshawk.view.maps.obstacles && goshawk.view.maps.grown && goshawk.pose),
       'map and vehicle come');
-check((await page.evaluate(() => goshawk.view.pixels())).colors > 500, 'the map is drawn');
+check(await wait(() => goshawk.view.pixels().colors > 500), 'the map is drawn');
 
 // Aim at the goal's place and click there.
 await page.evaluate(height => {
@@ -22,11 +22,11 @@ await page.evaluate(height => {
 }, goal[2]);
 await page.click('#goal');
 await page.mouse.click(...await page.evaluate(p => goshawk.view.project(p), goal));
-check(await wait(() => goshawk.state.mode === 'flying', 10000), 'the click makes it fly');
+check(await wait(() => goshawk.state.mode === 'flying'), 'the click makes it fly');
 const sent = await page.evaluate(() => goshawk.sent);
 check(Math.hypot(...sent.map((c, k) => c - goal[k])) < 0.05, `to where was clicked: ${sent}`);
 check(await wait(() => goshawk.leg && goshawk.view.layers.trajectory.children.length > 0 &&
-                       goshawk.view.layers.corridor.children.length > 0, 5000),
+                       goshawk.view.layers.corridor.children.length > 0),
       'corridor and trajectory are drawn');
 
 // Meanwhile other clients of the bridge misbehave; each is told why it is closed.
@@ -53,7 +53,7 @@ check(/may not publish/.test(told), `a command for the motors: ${told}`);
 
 await page.waitForTimeout(1200);
 if (screenshot) await page.screenshot({path: screenshot});
-check(await wait(() => goshawk.state.mode === 'arrived', 30000), 'it arrives all the same');
+check(await wait(() => goshawk.state.mode === 'arrived'), 'it arrives all the same');
 const place = await page.evaluate(() => goshawk.view.body.position.toArray());
 check(Math.hypot(...place.map((c, k) => c - goal[k])) < 0.2, `the vehicle is drawn there: ${place}`);
 const flown = await page.evaluate(() => goshawk.track.length);

@@ -1,9 +1,8 @@
 // Opens Foxglove Studio as `goshawk view --foxglove` serves it, in headless Chromium:
 // node studio_page_test.mjs URL recording|live SCREENSHOT.png
-import {check, end, launch} from './browser.mjs';
+import {check, end, kPatience, launch} from './browser.mjs';
 
 const [url, kind, screenshot] = process.argv.slice(2);
-const kPatience = 120000;  // [ms] a hang, not slowness: it draws without a graphics card
 const browser = await launch();
 const page = await (await browser.newContext({viewport: {width: 1440, height: 900}})).newPage();
 page.setDefaultTimeout(kPatience);
@@ -19,8 +18,9 @@ const there = text => page.getByText(text).first().waitFor().then(() => true, ()
 
 // How many colours the 3D panel has, from the picture as it is seen.
 async function colors() {
-  const canvas = page.locator('canvas').first();
-  const png = (await canvas.screenshot({timeout: kPatience})).toString('base64');
+  // Of the page, not of the element: that would wait until the element rests, which it never does.
+  const clip = await page.locator('canvas').first().boundingBox();
+  const png = (await page.screenshot({clip, timeout: kPatience})).toString('base64');
   return page.evaluate(async data => {
     const image = new Image();
     image.src = 'data:image/png;base64,' + data;

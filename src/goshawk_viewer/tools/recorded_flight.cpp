@@ -31,7 +31,9 @@ bool is_called(const std::string& topic, const std::string& name) {
   return topic == name || topic.ends_with("/" + name);
 }
 
-double seconds(std::int64_t ns) { return double(ns) * 1e-9; }
+double seconds(std::int64_t ns) {
+  return double(ns) * 1e-9;
+}
 
 }  // namespace
 
@@ -55,7 +57,8 @@ std::map<std::uint16_t, RecordedFlight::Take> RecordedFlight::choose(
     const recording::Channel* first = nullptr;
     for (const auto& [id, channel] : reader.channels()) {
       const auto* schema = reader.schema_of(channel);
-      if (!schema || schema->name != wanted.type || !is_called(channel.topic, wanted.name)) continue;
+      if (!schema || schema->name != wanted.type || !is_called(channel.topic, wanted.name))
+        continue;
       if (!first || channel.topic < first->topic) first = &channel;
     }
     if (first) chosen[first->id] = wanted.take;
@@ -98,8 +101,7 @@ Status RecordedFlight::take_odometry(const Bytes& bytes) {
   if (!flown_.empty() && stamp_ns < flown_.back().stamp_ns) {
     return fail(ErrorCode::invalid_input, "time goes backwards; what comes again is left out");
   }
-  flown_.push_back(
-      {stamp_ns, {0.0, state->position_map, state->velocity_map, state->q_map_base}});
+  flown_.push_back({stamp_ns, {0.0, state->position_map, state->velocity_map, state->q_map_base}});
   return success();
 }
 
@@ -108,8 +110,8 @@ Status RecordedFlight::take_commitment(const Bytes& bytes) {
   if (!m) return m.error();
   auto received = conversions::from_msg(m->trajectory());
   if (!received) return received.error();
-  Committed committed{received->request.id, conversions::to_ns(m->start_time()),
-                      received->request.limits, {}};
+  Committed committed{
+      received->request.id, conversions::to_ns(m->start_time()), received->request.limits, {}};
   committed.leg.trajectory = std::move(received->trajectory);
   committed.leg.corridor = std::move(received->polytopes);
   committed_.push_back(std::move(committed));
