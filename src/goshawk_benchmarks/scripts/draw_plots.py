@@ -38,7 +38,7 @@ def draw(report, plot, folder):
     named = any(isinstance(r[plot["x"]], str) for r in rows)
     if named:
         names = list(dict.fromkeys(r[plot["x"]] for r in rows))
-        axes.set_xticks(range(len(names)), [textwrap.fill(n, 12) for n in names], fontsize="small")
+        axes.set_xticks(range(len(names)), [textwrap.fill(n, 14) for n in names], fontsize="small")
         axes.margins(x=0.6 / len(names))
     if plot["log_x"]:
         axes.set_xscale("log")
@@ -51,7 +51,9 @@ def draw(report, plot, folder):
     axes.set(title=plot["title"], xlabel=plot["x_label"], ylabel=plot["y_label"])
     axes.grid(True, which="both", alpha=0.3)
     if len(series) > 1:
-        axes.legend(fontsize="small")
+        # Beside the picture where points may lie anywhere.
+        beside = {"loc": "upper left", "bbox_to_anchor": (1.0, 1.0)} if named else {}
+        axes.legend(fontsize="small", **beside)
     path = os.path.join(folder, plot["file"] + ".png")
     figure.savefig(path, dpi=130)
     plt.close(figure)
