@@ -190,6 +190,8 @@ void measure_paths(Report& report, const WorldClass& world, const std::vector<Sc
          {"segments", segments},
          {"polytopes", polytopes},
          {"median_us_path", whole.median_us()},
+         {"p99_us_path", whole.quantile_us(0.99)},
+         {"max_us_path", whole.quantile_us(1.0)},
          {"median_us", shares.median_us()},
          {"p90_us", shares.p90_us()},
          {"overlaps", radius_voxels.size()},
@@ -243,6 +245,15 @@ void draw(Report& report, const std::string& world, const std::string& file) {
                .y_label = "median [m3]",
                .series = "generator",
                .where = where});
+  report.draw({.file = file + "_paths",
+               .title = "Time for a segment of a whole path, " + world,
+               .x = "density",
+               .y = "median_us",
+               .x_label = "share of blocked voxels",
+               .y_label = "median [us]",
+               .series = "generator",
+               .where = {{"table", "paths"}, {"world", world}},
+               .log_y = true});
 }
 
 void run(Report& report) {
@@ -261,6 +272,15 @@ void run(Report& report) {
   measure_map_size(report);
   draw(report, boxes, "corridor_boxes");
   draw(report, forest, "corridor_forest");
+  report.draw({.file = "corridor_map_size",
+               .title = "Time for the same path in larger maps",
+               .x = "map_side_m",
+               .y = "median_us_path",
+               .x_label = "side of the map [m]",
+               .y_label = "median [us]",
+               .series = "generator",
+               .where = {{"table", "map_size"}},
+               .log_x = true});
 }
 
 }  // namespace

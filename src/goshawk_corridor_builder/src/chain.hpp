@@ -19,8 +19,7 @@ struct PathPoint {
   double wanted = 0.0;             // [voxel edges] radius of the free ball around it, at most half
   double needed = 0.0;             // what polytopes that meet here must hold: 0 at start and goal
   bool moved = false;              // to the centre of a voxel
-  bool bend = false;               // the segment that begins here is to be bent if it is thin
-  bool settled = false;            // it was, or cannot be
+  bool settled = false;            // the segment that begins here was bent, or cannot be
 };
 
 /// Polytopes in a row, with points where one is left for the next; n polytopes have n + 1 joints,

@@ -43,31 +43,6 @@ bool touches_unknown(const VoxelGrid& grid, const Vec3& p) {
   return false;
 }
 
-// Every fault of a config, by its own description.
-struct Faults {
-  std::string text;
-
-  void note(const char* name, const std::string& rule) {
-    text += (text.empty() ? "" : "; ") + std::string(name) + " " + rule;
-  }
-  template <typename Value>
-  void operator()(const char* name, const Value& value, const char*, const char*, Range range) {
-    if (range.contains(double(value))) return;
-    note(name, "is " + number_text(double(value)) + ", must be " +
-                   (range.above_lo ? "above " : "at least ") + number_text(range.lo) +
-                   " and at most " + number_text(range.hi));
-  }
-  void operator()(const char* name, const std::string& value, const char*, const char*,
-                  const OneOf& words) {
-    const auto& all = words.choices;
-    if (std::find(all.begin(), all.end(), value) != all.end()) return;
-    std::string list;
-    for (const std::string& word : all) list += (list.empty() ? "" : ", ") + word;
-    note(name, "is '" + value + "', must be one of " + list);
-  }
-  void operator()(const char*, bool, const char*, const char*, Anything) {}
-};
-
 }  // namespace
 
 class CorridorBuilder::Impl {
@@ -233,9 +208,9 @@ Error CorridorBuilder::Impl::blocked(const VoxelGrid& grid, std::span<const Vec3
 }
 
 Result<CorridorBuilder> CorridorBuilder::create(const Config& config) {
-  Faults faults;
+  ParameterFaults faults;
   describe(config, faults);
-  if (!faults.text.empty()) return fail(ErrorCode::invalid_parameter, faults.text);
+  if (auto status = faults.status(); !status) return status.error();
   return CorridorBuilder(std::make_unique<Impl>(config));
 }
 

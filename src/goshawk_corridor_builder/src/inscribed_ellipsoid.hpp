@@ -10,7 +10,7 @@ namespace goshawk::corridor_builder {
 /// A large ellipsoid inside planes, on the way to the largest: maximise log det L subject to
 /// |L' n| + n . c <= d for every plane (Boyd and Vandenberghe, Convex Optimization, section 8.4.2),
 /// by a few damped Newton steps on the barrier of these second-order cones in the nine unknowns
-/// (c, L). They stop short of the optimum on purpose: see kLastWeights.
+/// (c, L). They stop short of the optimum on purpose: see kLastWeight.
 ///
 /// @param inside an ellipsoid inside the planes; shrunk by halves until it truly is
 /// @return false where not even a small part of it is (its centre lies on or behind a plane)

@@ -117,10 +117,9 @@ void ObstacleMerger::merge(const Vec3& offset, double radius, BoxSet& boxes) {
 
 bool ObstacleMerger::layer_holds(Word mask, int y0, int y1, int z) const {
   const Word* words = words_.data() + at(0, z);
-  for (int y = y0; y < y1; ++y) {
-    if ((words[y] & mask) != mask) return false;
-  }
-  return true;
+  Word all = mask;
+  for (int y = y0; y < y1; ++y) all &= words[y];  // to the end: faster than to ask each time
+  return all == mask;
 }
 
 // Layers below z0 are done already.

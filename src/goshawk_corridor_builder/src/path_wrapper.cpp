@@ -64,49 +64,22 @@ std::optional<Blockage> PathWrapper::wrap(const VoxelGrid& grown, const Obstacle
   measure_rooms(grown.occupied, points);
   chain.clear();
   chain.joints_map.push_back(points.front().p_map);
-  pieces_.clear();
   for (std::size_t i = 0; i + 1 < points.size();) {
     const Step step = wrap_one(i, chain);
     if (step == Step::blocked) return Blockage{points[i].segment, blocked_grid_};
-    if (step == Step::done) i = join(i, chain);
+    if (step == Step::done) i = join(i + 1, chain);
   }
   return std::nullopt;
 }
 
-// The last polytope of the chain, which begins at point i, joins the one before; where they share
-// too little, a thin one of them is taken back. @return the point to go on from
+// The last polytope of the chain joins the one before. @param i where its segment ends
+// @return the point to go on from
 std::size_t PathWrapper::join(std::size_t i, Chain& chain) {
   const std::size_t last = chain.size() - 1;
-  if (last > 0) {
-    const Ball ball = largest_ball(chain[last - 1], chain[last]);
-    if (ball.radius_m < (kHalfVoxel - kRounding) * grown_->geometry.resolution_m) {
-      if (thin_ && bend_later(i)) {
-        chain.drop_last();
-        return i;
-      }
-      const Piece before = pieces_.back();
-      if (before.thin && bend_later(before.begin)) {
-        chain.drop_last();
-        chain.drop_last();
-        chain.joints_map.pop_back();
-        if (chain.size() > 0) chain.overlaps.pop_back();
-        pieces_.pop_back();
-        return before.begin;
-      }
-    }
-    chain.overlaps.push_back(ball);
-  }
-  pieces_.push_back({i, thin_});
-  i = config_.drop_covered ? covered_until(chain[last], i + 1) : i + 1;
+  if (last > 0) chain.overlaps.push_back(largest_ball(chain[last - 1], chain[last]));
+  if (config_.drop_covered) i = covered_until(chain[last], i);
   chain.joints_map.push_back((*points_)[i].p_map);
   return i;
-}
-
-bool PathWrapper::bend_later(std::size_t i) {
-  PathPoint& point = (*points_)[i];
-  if (!config_.bend_path || point.settled) return false;
-  point.bend = true;
-  return true;
 }
 
 // Polytopes that meet at a joint must share a ball there; start and goal may lie at an obstacle.
@@ -125,9 +98,9 @@ PathWrapper::Step PathWrapper::wrap_one(std::size_t i, Chain& chain) {
   const PathPoint q = (*points_)[i + 1];
   const bool no_ball = i + 2 < points_->size() && q.needed == 0.0;  // around the next joint
   if (no_ball && config_.bend_path && !p.settled) return move_joint(i, chain);
-  const bool may_bend = p.bend && !p.settled;
+  // A single polytope has no neighbour to share a ball with.
+  const bool may_bend = config_.bend_path && !p.settled && points_->size() > 2;
   const Separation result = build(p, q, may_bend, chain);
-  thin_ = result == Separation::thin || no_ball;
   if (result == Separation::roomy) return Step::done;
   if (result == Separation::blocked && (!p.moved || p.settled)) return Step::blocked;
   if (!may_bend && result == Separation::thin) return Step::done;

@@ -15,9 +15,9 @@ namespace goshawk::corridor_builder {
 void split_path(const GridGeometry& geometry, std::span<const Vec3> path, double max_segment_m,
                 std::vector<PathPoint>& points);
 
-/// The ellipsoid generator: wraps a path segment by segment. Where two polytopes share no ball of
-/// half a voxel, one of their segments comes too near to obstacles: the path is bent away from them
-/// there (Detour), so that the balls fit along it, and wrapped again.
+/// The ellipsoid generator: wraps a path segment by segment. A polytope that holds balls of half a
+/// voxel around both ends of its segment shares them with its neighbours. Where obstacles come so
+/// near that these do not fit, the path is bent away from them (Detour) before it is wrapped.
 class PathWrapper {
  public:
   explicit PathWrapper(const Config& config) : config_(config), segment_polytope_(config) {}
@@ -35,7 +35,6 @@ class PathWrapper {
   void measure_rooms(const BitGrid& occupied, std::vector<PathPoint>& points) const;
   Step wrap_one(std::size_t i, Chain& chain);
   std::size_t join(std::size_t i, Chain& chain);
-  bool bend_later(std::size_t i);
   Separation build(const PathPoint& p, const PathPoint& q, bool stop_when_thin, Chain& chain);
   Step move_joint(std::size_t i, Chain& chain);
   void bend(std::size_t i, const Segment& segment);
@@ -50,12 +49,6 @@ class PathWrapper {
   std::vector<Index3> voxels_;
   std::vector<Vec3> centres_;
   std::vector<Vec3> between_;
-  struct Piece {
-    std::size_t begin;  // the point where a polytope of the chain begins
-    bool thin;          // it does not hold the balls around the ends of its segment
-  };
-  std::vector<Piece> pieces_;
-  bool thin_ = false;  // the polytope that was built last
   // Of the path that is being wrapped.
   const VoxelGrid* grown_ = nullptr;
   const ObstacleLayers* map_ = nullptr;

@@ -175,7 +175,9 @@ bool meets(const Obstacle& o, const Segment& s, const Room& room) {
     if (o.lower[a] - reach >= std::max(s.p[a], s.q[a])) return false;
     if (o.upper[a] + reach <= std::min(s.p[a], s.q[a])) return false;
   }
-  return clearance(o, s, room) < 0.0;
+  const double apart = clearance(o, s, {});  // mostly enough, and cheap: no taper
+  if (apart >= std::max(room.p, room.q)) return false;
+  return apart < std::min(room.p, room.q) || clearance(o, s, room) < 0.0;
 }
 
 double clearance(const Obstacle& o, const Segment& s, const Room& room) {

@@ -84,17 +84,19 @@ Status write_corridor_ply(const Flight& flight, const std::filesystem::path& fil
   std::size_t face_count = 0;
   for (std::size_t leg = 0; leg < flight.legs.size(); ++leg) {
     for (std::size_t k = 0; k < flight.legs[leg].corridor.size(); ++k) {
-      for (const Polygon& face : face_polygons(flight.legs[leg].corridor[k])) {
-        faces += std::to_string(face.size());
-        for (const Vec3& p : face) {
-          append(vertices, p.x());
-          for (int axis = 1; axis < 3; ++axis) append(vertices += ' ', p[axis]);
-          vertices += '\n';
-          faces += ' ' + std::to_string(vertex_count++);
-        }
-        faces += ' ' + std::to_string(leg) + ' ' + std::to_string(k) + '\n';
-        ++face_count;
+      const Mesh mesh = closed_mesh(flight.legs[leg].corridor[k]);
+      for (const Vec3& p : mesh.corners) {
+        append(vertices, p.x());
+        for (int axis = 1; axis < 3; ++axis) append(vertices += ' ', p[axis]);
+        vertices += '\n';
       }
+      for (const auto& face : mesh.faces) {
+        faces += std::to_string(face.size());
+        for (const std::size_t corner : face) faces += ' ' + std::to_string(vertex_count + corner);
+        faces += ' ' + std::to_string(leg) + ' ' + std::to_string(k) + '\n';
+      }
+      vertex_count += mesh.corners.size();
+      face_count += mesh.faces.size();
     }
   }
   return write_file(

@@ -73,6 +73,28 @@ std::vector<Polygon> face_polygons(const Polytope& polytope, double extent_m) {
   return faces;
 }
 
+Mesh closed_mesh(const Polytope& polytope) {
+  constexpr double kSame_m = 1e-6;
+  Mesh mesh;
+  const auto index_of = [&](const Vec3& p) {
+    const auto same = [&](const Vec3& corner) { return (corner - p).norm() <= kSame_m; };
+    const auto found = std::ranges::find_if(mesh.corners, same);
+    const auto index = std::size_t(found - mesh.corners.begin());
+    if (found == mesh.corners.end()) mesh.corners.push_back(p);
+    return index;
+  };
+  for (const Polygon& polygon : face_polygons(polytope)) {
+    std::vector<std::size_t> face;
+    for (const Vec3& p : polygon) {
+      const std::size_t corner = index_of(p);
+      if (face.empty() || face.back() != corner) face.push_back(corner);
+    }
+    while (face.size() > 1 && face.front() == face.back()) face.pop_back();
+    if (face.size() >= 3) mesh.faces.push_back(std::move(face));
+  }
+  return mesh;
+}
+
 std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points) {
   std::sort(points.begin(), points.end(), [](const auto& a, const auto& b) {
     return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());

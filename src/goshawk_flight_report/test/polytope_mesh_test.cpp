@@ -3,6 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
 
 #include "goshawk/core/random.hpp"
 
@@ -76,6 +80,58 @@ TEST(FacePolygons, OfAnEmptyPolytopeAreNone) {
   polytope.add(Vec3::UnitX(), -1.0);
   EXPECT_TRUE(face_polygons(polytope).empty());
   EXPECT_TRUE(face_polygons(Polytope{}).empty());
+}
+
+double volume(const Mesh& mesh) {
+  std::vector<Polygon> faces;
+  for (const auto& face : mesh.faces) {
+    Polygon& polygon = faces.emplace_back();
+    for (const std::size_t i : face) polygon.push_back(mesh.corners[i]);
+  }
+  return volume(faces);
+}
+
+// Is every edge passed once in each direction?
+bool is_closed(const Mesh& mesh) {
+  std::map<std::pair<std::size_t, std::size_t>, int> passed;
+  for (const auto& face : mesh.faces) {
+    for (std::size_t i = 0; i < face.size(); ++i) ++passed[{face[i], face[(i + 1) % face.size()]}];
+  }
+  return std::ranges::all_of(passed, [&](const auto& edge) {
+    const auto back = passed.find({edge.first.second, edge.first.first});
+    return edge.second == 1 && back != passed.end() && back->second == 1;
+  });
+}
+
+TEST(ClosedMesh, IsClosedTurnedOutwardsAndAsLargeAsThePolytope) {
+  Random random(7);
+  for (int k = 0; k < 300; ++k) {
+    const Polytope polytope = random_polytope(random, k % 30);
+    const Mesh mesh = closed_mesh(polytope);
+    ASSERT_TRUE(is_closed(mesh)) << k;
+    const std::size_t corners = mesh.corners.size(), faces = mesh.faces.size();
+    std::size_t edges = 0;
+    for (const auto& face : mesh.faces) edges += face.size();
+    EXPECT_EQ(corners + faces, edges / 2 + 2);  // Euler
+    EXPECT_NEAR(volume(mesh), volume(face_polygons(polytope)), 1e-5);
+    for (const Vec3& p : mesh.corners) EXPECT_NEAR(polytope.violation(p), 0.0, 1e-9);
+  }
+}
+
+TEST(ClosedMesh, StaysClosedWherePlanesNearlyMeetInAPoint) {
+  Random random(8);
+  for (int k = 0; k < 300; ++k) {
+    Polytope polytope = Polytope::box({0, 0, 0}, {1, 1, 1});
+    const Vec3 corner(1, random.chance(0.5), 1);
+    for (int cut = 1 + random.below(4); cut > 0; --cut) {
+      const Vec3 n = Vec3(1, random.uniform(-1, 1), random.uniform(0, 1)).normalized();
+      const double off = std::pow(10.0, random.uniform(-13, -3)) * (random.chance(0.5) ? 1 : -1);
+      polytope.add(n, n.dot(corner) + off);
+    }
+    const Mesh mesh = closed_mesh(polytope);
+    EXPECT_TRUE(is_closed(mesh)) << k;
+    EXPECT_NEAR(volume(mesh), volume(face_polygons(polytope)), 1e-5);
+  }
 }
 
 TEST(ConvexHull, HoldsEveryPointAndTurnsLeftOnly) {
