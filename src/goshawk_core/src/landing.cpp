@@ -57,7 +57,7 @@ Status check_way_down(const VoxelGrid& grid, const Vec3& from_map, double land_h
     const Vec3 beside = kOnFace * grid.geometry.resolution_m * Vec3(x, y, 0.0);
     const auto top = grid.geometry.index_of(from_map + beside);
     if (!top) continue;
-    const Status column = check_column(grid, *top, ground + 1);
+    Status column = check_column(grid, *top, ground + 1);
     if (column) return column;
     if (answer.code() == ErrorCode::goal_outside) answer = column;
   }
