@@ -14,6 +14,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
 
 MARKERS = "os^Dv<>ph*"
+MOST_MARKED = 60  # points of a line; more are a curve
 
 
 def rows_of(report, plot):
@@ -31,7 +32,8 @@ def draw(report, plot, folder):
     for index, name in enumerate(series):
         mine = [r for r in rows if str(r.get(plot["series"], "")) == name]
         xs, ys = [r[plot["x"]] for r in mine], [r[plot["y"]] for r in mine]
-        style = {"marker": MARKERS[index % len(MARKERS)], "label": name or None}
+        curve = len(mine) > MOST_MARKED and not plot["points_only"]
+        style = {"marker": None if curve else MARKERS[index % len(MARKERS)], "label": name or None}
         axes.plot(xs, ys, linestyle="none" if plot["points_only"] else "-", **style)
     named = any(isinstance(r[plot["x"]], str) for r in rows)
     if named:

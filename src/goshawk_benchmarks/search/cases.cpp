@@ -191,12 +191,12 @@ void measure_sampling(Report& report, Case c) {
   keep_joined(c);
   report.progress(c.table + ", " + c.map);
   for (const std::string& planner : c.planners) {
-    std::vector<double> us;
+    std::vector<double> us, expanded, setup_us;
     double length_m = 0.0;
     for (const World& world : c.worlds) {
       const auto grid = grid_of(world, c.resolution_m);
       auto search = stage_of(c, planner, "shortest");
-      search.set_map(grid);
+      setup_us.push_back(1e6 * seconds([&] { search.set_map(grid); }));
       const World::Query& q = world.queries.front();
       const Vec3 start = grid->geometry.center(q.start), goal = grid->geometry.center(q.goal);
       path_search::PlannedPath path;
@@ -206,13 +206,16 @@ void measure_sampling(Report& report, Case c) {
           compare(world.name, {{planner, plan}}, planner == "jastar" ? 9 : 1, Clock::processor);
       if (!found) continue;
       us.push_back(timing[0].median_us());
+      expanded.push_back(double(path.counters.expanded));
       length_m += path.pruned_length_m;
     }
     Json row{{"table", c.table},   {"map", c.map},   {"ratio", or_null(c.ratio)},
              {"planner", planner}, {"rule", c.rule}, {"maps", c.worlds.size()},
              {"found", us.size()}};
     row["median_us"] = us.empty() ? Json(nullptr) : Json(median(us));
+    row["expanded"] = us.empty() ? Json(nullptr) : Json(median(expanded));
     row["length_m"] = us.empty() ? Json(nullptr) : Json(length_m / double(us.size()));
+    row["setup_us"] = median(setup_us);
     report.add(row);
   }
 }
@@ -254,9 +257,13 @@ void measure_setup(Report& report, Case c) {
   }
   report.add({{"table", c.table},
               {"map", c.map},
+              {"ratio", or_null(c.ratio)},
               {"planner", "jastar"},
               {"rule", c.rule},
+              {"maps", 1},
               {"voxels", map.voxels()},
+              {"expanded", path.counters.expanded},
+              {"length_m", path.cost_voxels * c.resolution_m},
               {"setup_us", median(fresh)},
               {"same_map_us", median(same)},
               {"changed_1000_us", median(changed)},
@@ -268,18 +275,19 @@ void measure_pruning(Report& report, Case c) {
   keep_joined(c);
   report.progress(c.table + ", " + c.map);
   for (const std::string pruning : {"none", "greedy", "shortest", "relaxed"}) {
-    std::vector<double> us, waypoints;
+    std::vector<double> us, waypoints, expanded, setup_us;
     double length_m = 0.0;
     for (const World& world : c.worlds) {
       const auto grid = grid_of(world, c.resolution_m);
       auto search = stage_of(c, "jastar", pruning);
-      search.set_map(grid);
+      setup_us.push_back(1e6 * seconds([&] { search.set_map(grid); }));
       const World::Query& q = world.queries.front();
       const Vec3 start = grid->geometry.center(q.start), goal = grid->geometry.center(q.goal);
       path_search::PlannedPath path;
       const auto plan = [&] { (void)search.plan(start, goal, path).ok(); };
       us.push_back(compare(world.name, {{pruning, plan}}, 9, Clock::processor)[0].median_us());
       waypoints.push_back(double(path.waypoints_map.size()));
+      expanded.push_back(double(path.counters.expanded));
       length_m += path.pruned_length_m;
     }
     report.add({{"table", c.table},
@@ -290,7 +298,9 @@ void measure_pruning(Report& report, Case c) {
                 {"maps", c.worlds.size()},
                 {"median_us", median(us)},
                 {"waypoints", median(waypoints)},
-                {"length_m", length_m / double(c.worlds.size())}});
+                {"expanded", median(expanded)},
+                {"length_m", length_m / double(c.worlds.size())},
+                {"setup_us", median(setup_us)}});
   }
 }
 

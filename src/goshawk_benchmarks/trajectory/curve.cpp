@@ -11,7 +11,7 @@ void add(Json& rows, double t, const char* what, const char* line, double value)
 
 void draw(Report& report, const char* what, const char* label) {
   report.draw({.file = what,
-               .title = std::string(what) + ", density 0.4",
+               .title = std::string("One flight at density 0.4: ") + what,
                .x = "t_s",
                .y = "value",
                .x_label = "time [s]",

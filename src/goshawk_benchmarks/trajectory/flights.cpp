@@ -118,10 +118,10 @@ Task forest_task(double density, int seed) {
   return task_of(spec, "forest 30x30x5", start, goal);
 }
 
-void measure_flights(Report& report) {
-  Json table = Json::array({thesis_row("thesis", 10.561, 0.672, 1.286),
-                            thesis_row("ref40", 13.322, 0.913, 1.372),
-                            thesis_row("ref42", 10.729, 0.821, 1.273)});
+namespace {
+
+/// All planners but those whose search this build lacks.
+std::vector<Planner> planners_here(Report& report) {
   std::vector<Planner> planners;
   for (const std::string& name : Planner::names()) {
     if (auto planner = Planner::make(name)) {
@@ -130,29 +130,10 @@ void measure_flights(Report& report) {
       report.progress(name + " is left out: its search is not built in");
     }
   }
-  const bool quick = report.options().quick;
-  const auto measure = [&](Task (*make)(double, int), double density, int runs, bool rivals) {
-    std::vector<Tally> tallies(planners.size());
-    Task task;
-    for (int seed = 1; seed <= runs; ++seed) {
-      task = make(density, seed);
-      for (std::size_t i = 0; i < planners.size(); ++i) {
-        if (i > 0 && !rivals) continue;
-        if (quick && planners[i].samples() && seed > kQuickSamplingRuns) continue;
-        tallies[i].add(planners[i].fly(task), task);
-      }
-    }
-    report.progress(task.world + " at density " + std::to_string(density).substr(0, 4));
-    for (std::size_t i = 0; i < planners.size(); ++i) {
-      if (tallies[i].runs == 0) continue;
-      report.add(tallies[i].row(task, planners[i].name()));
-      if (density == 0.4) table.push_back(measured_row(planners[i].name(), tallies[i]));
-    }
-  };
-  for (const double density : {0.1, 0.2, 0.3, 0.4})
-    measure(box_task, density, quick ? 15 : 50, true);
-  for (const double density : {0.1, 0.2}) measure(forest_task, density, quick ? 2 : 10, false);
-  report.note("thesis_table_3", table);
+  return planners;
+}
+
+void draw_by_density(Report& report) {
   const Json where{{"world", "boxes 6x8x4"}};
   report.draw({.file = "generation_time",
                .title = "Plan, from search to trajectory",
@@ -179,6 +160,39 @@ void measure_flights(Report& report) {
                .y_label = "median [m/s]",
                .series = "planner",
                .where = where});
+}
+
+}  // namespace
+
+void measure_flights(Report& report) {
+  Json table = Json::array({thesis_row("thesis", 10.561, 0.672, 1.286),
+                            thesis_row("ref40", 13.322, 0.913, 1.372),
+                            thesis_row("ref42", 10.729, 0.821, 1.273)});
+  std::vector<Planner> planners = planners_here(report);
+  const bool quick = report.options().quick;
+  const auto measure = [&](Task (*make)(double, int), double density, int runs, bool rivals) {
+    std::vector<Tally> tallies(planners.size());
+    Task task;
+    for (int seed = 1; seed <= runs; ++seed) {
+      task = make(density, seed);
+      for (std::size_t i = 0; i < planners.size(); ++i) {
+        if (i > 0 && !rivals) continue;
+        if (quick && planners[i].samples() && seed > kQuickSamplingRuns) continue;
+        tallies[i].add(planners[i].fly(task), task);
+      }
+    }
+    report.progress(task.world + " at density " + std::to_string(density).substr(0, 4));
+    for (std::size_t i = 0; i < planners.size(); ++i) {
+      if (tallies[i].runs == 0) continue;
+      report.add(tallies[i].row(task, planners[i].name()));
+      if (density == 0.4) table.push_back(measured_row(planners[i].name(), tallies[i]));
+    }
+  };
+  for (const double density : {0.1, 0.2, 0.3, 0.4})
+    measure(box_task, density, quick ? 15 : 50, true);
+  for (const double density : {0.1, 0.2}) measure(forest_task, density, quick ? 2 : 10, false);
+  report.note("thesis_table_3", table);
+  draw_by_density(report);
 }
 
 }  // namespace goshawk::bench

@@ -52,7 +52,9 @@ void print(const conformance::Report& report) {
 Result<std::string> launch_file(const ConformOptions& o, const std::string& folder) {
   if (!o.launch.empty()) return o.launch;
   const std::string file = folder + "/stage.yaml";
-  std::ofstream(file) << "stages: [{component: " << o.kit.stage << "}]\n";
+  // The map server begins with a box of unknown space, for the kit to look around in.
+  const char* params = o.kit.stage == "map_server" ? ", params: {use_box: true}" : "";
+  std::ofstream(file) << "stages: [{component: " << o.kit.stage << params << "}]\n";
   return file;
 }
 
@@ -96,8 +98,11 @@ int conform_command(const Arguments& arguments) {
       "judged.",
       "goshawk conform");
   ConformOptions o;
-  app.add_option("stage", o.kit.stage, "path_search, corridor_builder or trajectory_optimizer")
+  app.add_option("stage", o.kit.stage,
+                 "path_search, corridor_builder, trajectory_optimizer, tracker or map_server")
       ->required();
+  app.add_option("--input", o.kit.input,
+                 "an MCAP recording, whose requests are asked beside the generated ones");
   auto* running = app.add_flag("--against-running", o.running,
                                "what runs already, in ROS_DOMAIN_ID (its map is replaced)");
   app.add_option("--launch", o.launch, "launch file that starts the stage, and nothing else")

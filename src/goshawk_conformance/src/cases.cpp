@@ -12,8 +12,6 @@
 namespace goshawk::conformance {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
 msg::PlanRequest request_between(const Vec3& start, const Vec3& goal) {
   conversions::PlanRequest request;
   request.id = 1;

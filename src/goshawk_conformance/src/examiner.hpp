@@ -9,35 +9,10 @@
 #include "goshawk/conversions/grid.hpp"
 #include "goshawk/conversions/plan.hpp"
 #include "goshawk/runtime/node.hpp"
+#include "recorded.hpp"
+#include "tally.hpp"
 
 namespace goshawk::conformance {
-
-/// Collects what went wrong under a name; the item has passed where nothing did.
-class Tally {
- public:
-  explicit Tally(std::string name) : name_(std::move(name)) {}
-  void check(bool good, const std::string& fault) {
-    ++checked_;
-    if (!good && faults_++ == 0) first_ = fault;
-  }
-  Item item() const {
-    if (checked_ == 0) return {name_, false, "there was nothing to examine"};
-    if (faults_ == 0) return {name_, true, std::to_string(checked_) + " of them"};
-    return {name_, false,
-            std::to_string(faults_) + " of " + std::to_string(checked_) + ": " + first_};
-  }
-
- private:
-  std::string name_;
-  int checked_ = 0, faults_ = 0;
-  std::string first_;
-};
-
-inline runtime::RosArgs in_namespace(const std::string& node_namespace) {
-  runtime::RosArgs args;
-  args.node_namespace = node_namespace;
-  return args;
-}
 
 /// Sends Inputs to a stage, and examines the Outputs and the reports that come back.
 template <typename Input, typename Output>
@@ -60,16 +35,18 @@ class Examiner {
                                       [this](const msg::StageReport& m, const auto&) { take(m); });
   }
 
-  Result<Report> examine(const Cases<Input>& cases) {
+  Result<Report> examine(const Cases<Input>& cases,
+                         const std::optional<Recorded<Input>>& recorded) {
     if (auto there = wait_for_stage(); !there) return there.error();
     report_.stage = options_.stage;
     report_.items.push_back({"says that it is ready", ready_,
                              ready_ ? "" : "no stage_report of request 0 with code ok came"});
     if (!cases.no_map.empty() && options_.fresh) examine_no_map(cases);
-    send_map();
+    send_map(*world_.grid);
     examine_good(cases);
     for (const auto& bad : cases.bad) examine_bad(bad);
     examine_garbage(cases.good.front().input);
+    if (recorded) examine_recorded(*recorded);
     report_.implementation = implementation_;
     return report_;
   }
@@ -107,9 +84,9 @@ class Examiner {
     return success();
   }
 
-  void send_map() {
+  void send_map(const VoxelGrid& grid) {
     msg::VoxelGrid m;
-    conversions::fill_msg(*world_.grid, m);
+    conversions::fill_msg(grid, m);
     m.header(conversions::make_header(node_.now_ns()));
     (void)maps_.publish(m);
     maps_.wait_acknowledged(2.0);
@@ -173,7 +150,7 @@ class Examiner {
     for (const Tally* t : {&answered, &reported, &echoed, &valid, &again}) {
       report_.items.push_back(t->item());
     }
-    add_latency(latencies_s);
+    add_latency(report_, std::move(latencies_s));
   }
 
   void check_again(const Input& input, const Output& first, Tally& again) {
@@ -189,17 +166,6 @@ class Examiner {
     };
     again.check(bare(answer.outputs.front()) == bare(first),
                 "request " + std::to_string(id_) + " had another answer before");
-  }
-
-  void add_latency(std::vector<double> latencies_s) {
-    if (latencies_s.empty()) return;
-    std::ranges::sort(latencies_s);
-    const auto at = [&](double share) {
-      return latencies_s[std::size_t(share * double(latencies_s.size() - 1) + 0.5)];
-    };
-    report_.latency_p50_s = at(0.5);
-    report_.latency_p99_s = at(0.99);
-    report_.latency_max_s = latencies_s.back();
   }
 
   std::string what_came(const Answer& answer) const {
@@ -230,6 +196,35 @@ class Examiner {
     Input sent;
     const Answer answer = ask(bad.input, sent);
     report_.items.push_back(code_item(bad.name, answer, bad.codes));
+  }
+
+  // What others asked once, in their map: a code is an answer as well, where there was none before.
+  void examine_recorded(const Recorded<Input>& recorded) {
+    send_map(*recorded.grid);
+    Tally answered("answers every recorded request"), solved("solves what was solved"),
+        echoed("echoes recorded requests whole"), valid("results of recorded requests are valid");
+    for (Input input : recorded.inputs) {
+      const std::uint64_t recorded_id = request_of(input).id();
+      request_of(input).header().stamp({});  // stamped anew, so that deadlines hold
+      Input sent;
+      const Answer answer = ask(input, sent);
+      const std::string name = "recorded request " + std::to_string(recorded_id);
+      const bool refused = answer.outputs.empty() && answer.reports.size() == 1 &&
+                           answer.reports.front().code() != "ok" &&
+                           !answer.reports.front().message().empty();
+      const bool has_result = answer.outputs.size() == 1;
+      answered.check(has_result || refused, name + what_came(answer));
+      if (recorded.solved.contains(recorded_id)) solved.check(has_result, name + what_came(answer));
+      if (!has_result) continue;
+      const Output& output = answer.outputs.front();
+      echoed.check(runtime::encode(output.request()) == runtime::encode(request_of(sent)),
+                   name + " came back changed");
+      const std::string fault = fault_of(output, sent, *recorded.grid);
+      valid.check(fault.empty(), name + ": " + fault);
+    }
+    for (const Tally* t : {&answered, &solved, &echoed, &valid}) {
+      if (t->checked() > 0) report_.items.push_back(t->item());
+    }
   }
 
   // Bytes that are no message, from a second writer, then a good request.

@@ -1,11 +1,14 @@
 #pragma once
 
+#include <limits>
 #include <memory>
 
 #include "goshawk/core/grid_geometry.hpp"
 #include "goshawk/core/random.hpp"
 
 namespace goshawk::conformance {
+
+inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// A small cluttered map with a closed room in one corner.
 struct World {

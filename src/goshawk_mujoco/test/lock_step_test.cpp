@@ -2,9 +2,6 @@
 // their pilot and their planner. What is proven is that a flight repeats, bit for bit.
 
 #include <gtest/gtest.h>
-#include <signal.h>
-#include <spawn.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -15,6 +12,7 @@
 #include "goshawk/runtime/node.hpp"
 #include "goshawk_msgs.h"
 #include "nav_msgs.h"
+#include "stage_process.hpp"
 
 namespace goshawk {
 namespace {
@@ -27,28 +25,6 @@ using runtime::Qos;
 
 constexpr std::int64_t kGoal_ns = 1'500'000'000;
 constexpr std::int64_t kEnd_ns = 8'000'000'000;
-
-/// One goshawk_container, ended with the test.
-class Stage {
- public:
-  explicit Stage(std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), CONTAINER);
-    std::vector<char*> argv;
-    for (auto& argument : arguments) argv.push_back(argument.data());
-    argv.push_back(nullptr);
-    if (posix_spawn(&pid_, CONTAINER, nullptr, nullptr, argv.data(), environ) != 0) pid_ = -1;
-  }
-  ~Stage() {
-    if (pid_ <= 0) return;
-    kill(pid_, SIGTERM);
-    waitpid(pid_, nullptr, 0);
-  }
-  Stage(const Stage&) = delete;
-  Stage& operator=(const Stage&) = delete;
-
- private:
-  pid_t pid_ = -1;
-};
 
 /// Sends the goal, answers the plan request with a straight line, keeps what odometry says.
 class Pilot {

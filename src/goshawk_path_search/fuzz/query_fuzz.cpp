@@ -49,7 +49,7 @@ Config read_config(Bytes& in) {
   const std::uint8_t flags = in.byte();
   c.planner = kPlanners[in.byte() % 5];
   c.corner_rule = (flags & 1U) != 0 ? "squeeze" : "no_squeeze";
-  c.pruning = (flags & 2U) != 0 ? "greedy" : "shortest";
+  c.pruning = (flags & 2U) != 0 ? "greedy" : "relaxed";
   c.nearest_reachable = (flags & 4U) != 0;
   if ((flags & 8U) != 0) c.move_within_m = in.number();
   if ((flags & 16U) != 0) c.z_weight = in.number();

@@ -73,6 +73,7 @@ struct Writer::Impl {
 
   Status append(View bytes);
   Status close_chunk();
+  Status append_bare();
   View compress();
   void put_indices(Out& out, ChunkIndex& entry, std::uint64_t at) const;
   void count_chunk(ChunkIndex entry);
@@ -111,10 +112,20 @@ void Writer::Impl::put_indices(Out& out, ChunkIndex& entry, std::uint64_t at) co
   entry.indices_length = pending.size() - before;
 }
 
+// Schemas and channels before any message: a chunk of no messages would begin in 1970, and readers
+// take that for the recording's beginning (@mcap/core 1.2), or refuse a chunk without indices.
+Status Writer::Impl::append_bare() {
+  state = sink->reserve(chunk.records.size() + summary_room);
+  if (state) state = append(chunk.records);
+  if (state) chunk.clear();
+  return state;
+}
+
 Status Writer::Impl::close_chunk() {
   if (!state || chunk.records.empty()) return state;
+  if (chunk.messages == 0) return append_bare();
   const View records = compress();
-  ChunkIndex entry{.start_ns = chunk.messages > 0 ? chunk.start_ns : 0,
+  ChunkIndex entry{.start_ns = chunk.start_ns,
                    .end_ns = chunk.end_ns,
                    .offset = size,
                    .length = 0,
@@ -148,10 +159,8 @@ Status Writer::Impl::close_chunk() {
 void Writer::Impl::count_chunk(ChunkIndex entry) {
   for (const auto& [channel, entries] : chunk.index) channel_counts[channel] += entries.size();
   counts.messages += chunk.messages;
-  if (chunk.messages > 0) {
-    start_ns = std::min(start_ns, chunk.start_ns);
-    end_ns = std::max(end_ns, chunk.end_ns);
-  }
+  start_ns = std::min(start_ns, chunk.start_ns);
+  end_ns = std::max(end_ns, chunk.end_ns);
   chunks.push_back(std::move(entry));
 }
 

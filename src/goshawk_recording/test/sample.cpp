@@ -44,6 +44,7 @@ int main(int argc, char** argv) {
     return 1;
   }
   const auto channels = add_channels(*writer);
+  (void)writer->flush();  // channels before any message, as a recorder has them
   introspection::RandomMessage random(11);
   std::uint64_t time_ns = 1'700'000'000'000'000'000;
   for (int k = 0; k < kOfEach; ++k) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstring>
 
 #include "goshawk/core/random.hpp"
 #include "memory_sink.hpp"
@@ -90,6 +91,47 @@ TEST(Writer, FileOfNoMessageIsWhole) {
   EXPECT_TRUE(reader->complaints().empty());
   EXPECT_EQ(reader->message_count(), 0U);
   EXPECT_EQ(reader->channels().size(), 3U);
+}
+
+// Each begin of a chunk's times in a file: of records that stand outside of any other.
+std::vector<std::uint64_t> chunk_begins(const Bytes& bytes) {
+  std::vector<std::uint64_t> begins;
+  for (std::size_t at = 8; at + 9 <= bytes.size() - 8;) {
+    std::uint64_t length = 0, start_ns = 0;
+    std::memcpy(&length, &bytes[at + 1], 8);
+    std::memcpy(&start_ns, &bytes[at + 9], 8);
+    if (bytes[at] == 0x06) begins.push_back(start_ns);
+    at += 9 + length;
+  }
+  return begins;
+}
+
+// A chunk of no messages would say that the recording begins in 1970.
+TEST(Writer, NoChunkIsWithoutMessages) {
+  const auto bytes = std::make_shared<Bytes>();
+  auto writer = Writer::create(std::make_unique<MemorySink>(bytes, kPlenty, true));
+  ASSERT_TRUE(writer.ok());
+  const auto first = writer->add_channel({.topic = "/a", .message_encoding = "cdr"});
+  ASSERT_TRUE(writer->flush().ok());
+  const Bytes data = {0, 1, 0, 0, 42, 0, 0, 0};
+  ASSERT_TRUE(writer->write({first, 0, 1'000, 1'000, data}).ok());
+  ASSERT_TRUE(writer->flush().ok());
+  const auto silent = writer->add_channel({.topic = "/b", .message_encoding = "cdr"});
+  ASSERT_TRUE(writer->flush().ok());
+  ASSERT_TRUE(writer->flush().ok());
+  const auto last = writer->add_channel({.topic = "/c", .message_encoding = "cdr"});
+  ASSERT_TRUE(writer->write({last, 0, 2'000, 2'000, data}).ok());
+  ASSERT_TRUE(writer->close().ok());
+  EXPECT_EQ(chunk_begins(*bytes), (std::vector<std::uint64_t>{1'000, 2'000}));
+
+  const TemporaryFile file(*bytes);
+  auto reader = Reader::open(file.path());
+  ASSERT_TRUE(reader.ok());
+  EXPECT_TRUE(reader->complaints().empty());
+  EXPECT_EQ(read_all(*reader).size(), 2U);
+  EXPECT_EQ(reader->start_ns(), 1'000U);
+  EXPECT_EQ(reader->channels().size(), 3U);
+  EXPECT_EQ(reader->message_count(silent), 0U);
 }
 
 // As after kill -9: the file as it is, without close().

@@ -40,12 +40,12 @@ void PositionHold::lower(double step_m, double floor_map_m) {
   if (height > floor_map_m) position_map_.z() = std::max(floor_map_m, height - step_m);
 }
 
-ThrustAttitude PositionHold::step(const RigidBodyState& state) {
+ThrustAttitude PositionHold::step(const RigidBodyState& state, const Vec3& disturbance_map) {
   if (braking_ && state.velocity_map.norm() < kAtRest_m_s) {
     braking_ = false;
     position_map_ = state.position_map;
   }
-  Vec3 acceleration = -kVelocityGain_1_s * state.velocity_map;
+  Vec3 acceleration = -kVelocityGain_1_s * state.velocity_map - disturbance_map;
   if (!braking_) acceleration += kPositionGain_1_s2 * (position_map_ - state.position_map);
   return thrust_along(acceleration);
 }

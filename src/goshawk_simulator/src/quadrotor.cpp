@@ -6,6 +6,7 @@ namespace goshawk::simulator {
 namespace {
 
 constexpr double kStep_s = double(Quadrotor::kStep_ns) * 1e-9;
+constexpr double kDisturbanceBandwidth_rad_s = 3.0;
 constexpr double kMaxRate_rad_s = 100.0;
 constexpr double kMaxAdvance_s = 3600.0;
 
@@ -76,6 +77,7 @@ Status Quadrotor::reset(const Vec3& position_map, double yaw_rad) {
   control_ = Control::failsafe;
   not_landing_ = {ErrorCode::ok, ""};
   was_commanded_ = false;
+  disturbance_map_.setZero();
   remainder_ns_ = 0;
   return success();
 }
@@ -110,10 +112,22 @@ void Quadrotor::step() {
   const Eigen::Vector4d thrust_n = mixer_.allocate(wrench);
   const Eigen::Vector4d rotor_command =
       (thrust_n / config_.vehicle.thrust_coefficient_n_s2).cwiseMax(0.0).cwiseSqrt();
+  const Vec3 velocity_map = state().velocity_map;
   plant_->step(rotor_command, wind_.velocity_map(), kStep_s);
+  learn_disturbance(velocity_map);
   wind_.step();
   time_ns_ += kStep_ns;
   sensor_.record(state(), time_ns_);
+}
+
+// An accelerometer feels thrust and the forces of the air; thrust is known. Learnt at all times, so
+// that a failsafe in wind does not begin with being blown away.
+void Quadrotor::learn_disturbance(const Vec3& last_velocity_map) {
+  const Vec3 acceleration = (state().velocity_map - last_velocity_map) / kStep_s;
+  const Vec3 thrust =
+      rotor_thrust_n().sum() / config_.vehicle.mass_kg * (state().q_map_base * Vec3::UnitZ());
+  const Vec3 felt = acceleration + Vec3(0.0, 0.0, kGravity_m_s2) - thrust;
+  disturbance_map_ += kDisturbanceBandwidth_rad_s * kStep_s * (felt - disturbance_map_);
 }
 
 ThrustAttitude Quadrotor::onboard_target() {
@@ -122,7 +136,7 @@ ThrustAttitude Quadrotor::onboard_target() {
   if (control_ == Control::landing) {
     hold_.lower(config_.land_speed_m_s * kStep_s, config_.land_height_m);
   }
-  return hold_.step(state());
+  return hold_.step(state(), disturbance_map_);
 }
 
 // Commands that stop coming: first it holds, then it lands.

@@ -233,9 +233,28 @@ TEST(Quadrotor, HoldsItsPositionByItselfInAModerateWind) {
   config.wind_y_m_s = 3.0;
   auto quadrotor = make(config);
   advance(quadrotor, 10.0);
-  // No integral action onboard: the offset is the drag's acceleration over the position gain.
-  EXPECT_LT(quadrotor.state().position_map.norm(), 0.2);
+  EXPECT_LT(quadrotor.state().position_map.norm(), 0.01);
   EXPECT_LT(quadrotor.state().velocity_map.norm(), 1e-3);
+}
+
+// Commands stop in a wind that was flown in for a while: what the margin covers is not left.
+TEST(Quadrotor, AFailsafeInWindIsNotBlownAway) {
+  for (const double wind : {-3.0, 3.0}) {
+    Config config;
+    config.wind_y_m_s = wind;
+    config.landing = "never";
+    auto quadrotor = make(config);
+    advance(quadrotor, 10.0);
+    const ThrustAttitude balance{.thrust_n = quadrotor.rotor_thrust_n().sum(),
+                                 .q_map_base = quadrotor.state().q_map_base};
+    const Vec3 place = quadrotor.state().position_map;
+    ASSERT_TRUE(quadrotor.command(balance));
+    for (int i = 0; i < 100; ++i) {
+      advance(quadrotor, 0.1);
+      EXPECT_LT((quadrotor.state().position_map - place).norm(), 0.02);
+    }
+    EXPECT_EQ(quadrotor.control(), Control::failsafe);
+  }
 }
 
 TEST(Quadrotor, WithoutCommandsItHoldsThenLandsStraightDown) {

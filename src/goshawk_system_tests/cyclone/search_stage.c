@@ -1,5 +1,6 @@
 // A search stage in C, from idl/ alone: breadth first over the six face neighbours. Slow and
 // simple; the rest of the stack takes its paths as it takes ours. Runs until it is stopped.
+#include <math.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -26,13 +27,15 @@ static bool blocked(const Grid* g, long x, long y, long z) {
   return (g->occupied._buffer[(z * g->size_y + y) * words + x / 64] >> (x % 64)) & 1;
 }
 
-// The voxel of a point, or -1 where the vehicle cannot be.
+enum { OUTSIDE = -1, OCCUPIED = -2 };
+
+// The voxel of a point, or OUTSIDE or OCCUPIED where the vehicle cannot be.
 static long voxel_of(const Grid* g, Point p) {
   const double x = (p.x - g->origin.x) / g->resolution;
   const double y = (p.y - g->origin.y) / g->resolution;
   const double z = (p.z - g->origin.z) / g->resolution;
-  if (!(x >= 0 && y >= 0 && z >= 0 && x < g->size_x && y < g->size_y && z < g->size_z)) return -1;
-  if (blocked(g, (long)x, (long)y, (long)z)) return -1;
+  if (!(x >= 0 && y >= 0 && z >= 0 && x < g->size_x && y < g->size_y && z < g->size_z)) return OUTSIDE;
+  if (blocked(g, (long)x, (long)y, (long)z)) return OCCUPIED;
   return ((long)z * g->size_y + (long)y) * g->size_x + (long)x;
 }
 
@@ -91,12 +94,45 @@ static void report(dds_entity_t writer, const Request* r, const char* code, cons
   dds_write(writer, &m);
 }
 
+static bool finite_state(const goshawk_msgs_msg_FlatState* s) {
+  const double all[9] = {s->position.x,     s->position.y,     s->position.z,
+                         s->velocity.x,     s->velocity.y,     s->velocity.z,
+                         s->acceleration.x, s->acceleration.y, s->acceleration.z};
+  for (int k = 0; k < 9; ++k) {
+    if (!isfinite(all[k])) return false;
+  }
+  return true;
+}
+
+// What must be refused before any thought is given to it. @return whether the request is good
+static bool check(dds_entity_t reports, const Request* r) {
+  const goshawk_msgs_msg_Limits* l = &r->limits;
+  const double asked_s = r->header.stamp.sec + 1e-9 * r->header.stamp.nanosec;
+  const double now_s = 1e-9 * (double)dds_time();
+  const char *code = "ok", *message = "";
+  if (strcmp(r->header.frame_id, "map") != 0) {
+    code = "wrong_frame", message = "the request must be in frame map";
+  } else if (!finite_state(&r->start) || !finite_state(&r->goal) || !isfinite(r->goal_yaw)) {
+    code = "invalid_input", message = "a number of the start or the goal is not finite";
+  } else if (!(l->v_max > 0.0) || !(l->a_max > 0.0) || l->norm > 2) {
+    code = "invalid_limits", message = "limits must be above zero, their norm 0, 1 or 2";
+  } else if (r->deadline > 0.0 && now_s > asked_s + r->deadline) {
+    code = "deadline_exceeded", message = "the deadline had passed when the request came";
+  }
+  if (strcmp(code, "ok") != 0) report(reports, r, code, message);
+  return strcmp(code, "ok") == 0;
+}
+
 static void answer(dds_entity_t paths, dds_entity_t reports, const Grid* g, const Request* r) {
+  const dds_time_t begin_ns = dds_time();
+  if (!check(reports, r)) return;
   if (g == NULL) return report(reports, r, "no_map", "no map has come yet");
   const long start = voxel_of(g, r->start.position);
   const long goal = voxel_of(g, r->goal.position);
-  if (start < 0) return report(reports, r, "start_occupied", "the start is not free");
-  if (goal < 0) return report(reports, r, "goal_occupied", "the goal is not free");
+  if (start == OUTSIDE) return report(reports, r, "start_outside", "the start is off the map");
+  if (start == OCCUPIED) return report(reports, r, "start_occupied", "the start is not free");
+  if (goal == OUTSIDE) return report(reports, r, "goal_outside", "the goal is off the map");
+  if (goal == OCCUPIED) return report(reports, r, "goal_occupied", "the goal is not free");
   long* parent = malloc((size_t)voxels(g) * sizeof *parent);
   long* queue = malloc((size_t)voxels(g) * sizeof *queue);
   Point* points = malloc((size_t)(voxels(g) + 4) * sizeof *points);
@@ -113,6 +149,7 @@ static void answer(dds_entity_t paths, dds_entity_t reports, const Grid* g, cons
     m.waypoints._buffer = points;
     m.waypoints._length = m.waypoints._maximum = corners(g, r, start, goal, parent, points);
     m.raw = m.waypoints;
+    m.compute_ns = dds_time() - begin_ns;
     dds_write(paths, &m);
     report(reports, r, "ok", "");
   }

@@ -112,7 +112,9 @@ class TrackerComponent : public Component {
                                   .start = received->request.start,
                                   .goal = received->request.goal,
                                   .start_time_ns = conversions::to_ns(m.start_time()),
-                                  .yaw_rad = m.yaw()};
+                                  .yaw_rad = m.yaw(),
+                                  .yaw_step_s = m.trajectory().yaw_step(),
+                                  .yaw_points_rad = m.trajectory().yaw_points()};
     const auto [status, compute_ns] =
         timed([&] { return tracker_.accept(std::move(committed), node_.now_ns()); });
     timing.compute_ns = compute_ns;

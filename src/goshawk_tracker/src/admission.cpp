@@ -1,5 +1,6 @@
 #include "goshawk/tracker/admission.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -26,6 +27,13 @@ Status check_numbers(const CommittedTrajectory& c) {
   if (auto status = c.trajectory.check(); !status) return invalid(status.error().message);
   if (!is_finite(c.start) || !is_finite(c.goal)) return invalid("its start or goal is not finite");
   if (!std::isfinite(c.yaw_rad)) return invalid("its yaw is not finite");
+  if (!c.yaw_points_rad.empty()) {
+    const bool steps = c.yaw_step_s > 0.0 && std::isfinite(c.yaw_step_s);
+    if (!steps || c.yaw_points_rad.size() < 3 ||
+        !std::ranges::all_of(c.yaw_points_rad, [](double v) { return std::isfinite(v); })) {
+      return invalid("its curve of yaw needs three finite points and a step above zero");
+    }
+  }
   if (std::abs(double(c.start_time_ns)) > double(kTimeBound_ns)) {
     return invalid("its start time is beyond all clocks");
   }

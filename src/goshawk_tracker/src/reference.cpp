@@ -12,6 +12,18 @@ constexpr double kShortestBrake_s = 0.5;
 
 }  // namespace
 
+double CommittedTrajectory::yaw_at(double t_s) const {
+  if (yaw_points_rad.empty()) return yaw_rad;
+  const std::size_t spans = yaw_points_rad.size() - 2;
+  const double u = std::clamp(t_s / yaw_step_s, 0.0, double(spans));
+  const std::size_t k = std::min(std::size_t(u), spans - 1);
+  const double f = u - double(k);
+  const double before = yaw_points_rad[k + 1] - yaw_points_rad[k];
+  const double after = yaw_points_rad[k + 2] - yaw_points_rad[k + 1];
+  const double knot = 0.5 * (yaw_points_rad[k] + yaw_points_rad[k + 1]);
+  return knot + f * before + 0.5 * f * f * (after - before);
+}
+
 Reference Reference::hold(const Vec3& position_map) {
   Reference reference;
   reference.hold_map_ = position_map;

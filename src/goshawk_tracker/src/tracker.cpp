@@ -234,9 +234,9 @@ void Tracker::watch_odometry(std::int64_t now_ns) {
                    " s: no command goes out, the vehicle holds by itself; is its source alive?");
 }
 
-double Tracker::wanted_yaw() const {
+double Tracker::wanted_yaw(std::int64_t now_ns) const {
   if (config_.yaw == "keep" || !reference_.has_trajectory()) return first_yaw_rad_;
-  return reference_.committed().yaw_rad;
+  return reference_.committed().yaw_at(reference_.progress_s(now_ns));
 }
 
 // The heading moves towards the wanted one at a bounded rate. @return [rad/s] that rate
@@ -244,7 +244,7 @@ double Tracker::turn(std::int64_t now_ns) {
   const double dt = seconds(now_ns_, now_ns);
   if (!(dt > 0.0)) return 0.0;
   const double most = config_.max_yaw_rate_rad_s * std::min(dt, config_.odometry_timeout_s);
-  const double change = std::clamp(wrapped(wanted_yaw() - yaw_rad_), -most, most);
+  const double change = std::clamp(wrapped(wanted_yaw(now_ns) - yaw_rad_), -most, most);
   yaw_rad_ = wrapped(yaw_rad_ + change);
   return change / dt;
 }

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "goshawk/tracker/flatness.hpp"
 #include "trajectories.hpp"
 
 namespace goshawk::tracker {
@@ -95,6 +96,27 @@ TEST_P(ClosedLoopTest, InGustsOfThreeMetresASecondTheErrorStaysBelowTenCentimetr
   const auto worst = fly_many(config_, vehicle_);
   EXPECT_LT(worst.rms_m, 0.05);
   EXPECT_LT(worst.max_m, 0.10);
+}
+
+TEST_P(ClosedLoopTest, TurnsAlongACurveOfYaw) {
+  ClosedLoop loop(config_, vehicle_);
+  ASSERT_TRUE(loop.vehicle.reset({3, 0, 1}, 0.0));
+  loop.run_until(kSecond);
+  auto committed = straight_line({3, 0, 1}, {3, 6, 2}, 6.0);
+  committed.start_time_ns = loop.vehicle.time_ns();
+  committed.yaw_step_s = 0.05;
+  for (int k = -1; k <= 120; ++k) {  // to and fro, at 0.8 rad/s at the most
+    committed.yaw_points_rad.push_back(0.8 * (1.0 - std::cos(0.05 * std::max(k, 0))));
+  }
+  ASSERT_TRUE(loop.tracker.accept(committed, loop.vehicle.time_ns()));
+  double worst = 0.0;
+  loop.run_until(committed.start_time_ns + 6 * kSecond, [&] {
+    const double t = double(loop.vehicle.time_ns() - committed.start_time_ns) * 1e-9;
+    worst =
+        std::max(worst, std::abs(yaw_of(loop.vehicle.state().q_map_base) - committed.yaw_at(t)));
+  });
+  RecordProperty("worst_yaw_error_rad", std::to_string(worst));
+  EXPECT_LT(worst, 0.05);
 }
 
 TEST_P(ClosedLoopTest, NoisyAndLateOdometryCostsLittle) {

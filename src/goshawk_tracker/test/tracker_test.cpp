@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -293,6 +294,60 @@ TEST(Tracker, TurnsToThePlansYawAtABoundedRateOrKeepsItsOwn) {
   EXPECT_NEAR(yaw_after(config, -3.0, 1.0), -1.0, 0.011);
   config.yaw = "keep";
   EXPECT_NEAR(yaw_after(config, 2.0, 3.0), 0.0, 1e-9);
+}
+
+// A curve that turns by 0.8 rad/s for two seconds, and then holds.
+CommittedTrajectory turning_line(double start_yaw) {
+  auto committed = line(1, {0, 0, 1}, {2, 0, 1}, 0.0);
+  committed.yaw_step_s = 0.1;
+  for (int k = -1; k <= 40; ++k) {
+    const double t = std::clamp(0.1 * k, 0.0, 2.0);
+    committed.yaw_points_rad.push_back(start_yaw + 0.8 * t);
+  }
+  return committed;
+}
+
+TEST(Tracker, FollowsACurveOfYawWithinItsRate) {
+  for (const double start_yaw : {0.0, 0.5}) {
+    Config config;
+    auto tracker = make(config);
+    ASSERT_TRUE(tracker.step(at({0, 0, 1}), 0));
+    const auto committed = turning_line(start_yaw);
+    ASSERT_TRUE(tracker.accept(committed, 0));
+    double last = 0.0;
+    for (double t = 0.01; t <= 4.0; t += 0.01) {
+      const auto r = tracker.status().reference;
+      const auto command = tracker.step(at(r.position, r.velocity), ns(t));
+      ASSERT_TRUE(command);
+      const Vec3 x = command->q_map_base * Vec3::UnitX();
+      const double yaw = std::atan2(x.y(), x.x());
+      EXPECT_LE(std::abs(yaw - last), config.max_yaw_rate_rad_s * 0.01 + 1e-3);
+      // It begins elsewhere than the vehicle looks: caught up with by what the rate leaves.
+      const bool caught_up = t > start_yaw / (config.max_yaw_rate_rad_s - 0.8) + 0.1;
+      if (caught_up) {
+        EXPECT_NEAR(yaw, committed.yaw_at(t), 1e-6) << t;
+      }
+      last = yaw;
+    }
+    EXPECT_NEAR(last, start_yaw + 1.6, 1e-6);
+  }
+}
+
+TEST(Tracker, RefusesACurveOfYawThatIsNone) {
+  auto tracker = make();
+  ASSERT_TRUE(tracker.step(at({0, 0, 1}), 0));
+  auto no_step = turning_line(0.0);
+  no_step.yaw_step_s = 0.0;
+  auto short_curve = turning_line(0.0);
+  short_curve.yaw_points_rad.resize(2);
+  auto not_finite = turning_line(0.0);
+  not_finite.yaw_points_rad[5] = std::numeric_limits<double>::quiet_NaN();
+  for (const auto& bad : {no_step, short_curve, not_finite}) {
+    const auto status = tracker.accept(bad, 0);
+    ASSERT_FALSE(status);
+    EXPECT_EQ(status.code(), ErrorCode::invalid_input);
+    EXPECT_THAT(status.error().message, HasSubstr("yaw"));
+  }
 }
 
 }  // namespace

@@ -75,18 +75,22 @@ class TrajectoryOptimizerComponent : public Component {
     }
   }
 
-  // Begins where the yaw of the last trajectory ended.
+  // A vehicle that flies looks where it was told to; one at rest where its last flight ended. The
+  // tracker, which knows better, catches up.
   Status add_yaw(const conversions::PlanRequest& request, const Trajectory& trajectory,
                  msg::BezierTrajectory& m) {
     if (config_.yaw == "none") return success();
-    const auto curve =
-        plan_yaw(trajectory, {.mode = config_.yaw == "fixed"          ? YawMode::fixed
-                                      : config_.yaw == "along_motion" ? YawMode::along_motion
-                                                                      : YawMode::towards_point,
-                              .start_rad = yaw_rad_,
-                              .fixed_rad = request.goal_yaw_rad,
-                              .point_map = Vec3(config_.yaw_point_x_m, config_.yaw_point_y_m, 0.0),
-                              .rate_max_rad_s = config_.yaw_rate_max_rad_s});
+    YawRequest yaw{.mode = config_.yaw == "fixed"          ? YawMode::fixed
+                           : config_.yaw == "along_motion" ? YawMode::along_motion
+                                                           : YawMode::towards_point,
+                   .start_rad = yaw_rad_,
+                   .fixed_rad = request.goal_yaw_rad,
+                   .point_map = Vec3(config_.yaw_point_x_m, config_.yaw_point_y_m, 0.0),
+                   .rate_max_rad_s = config_.yaw_rate_max_rad_s};
+    if (!request.start.velocity.isZero(0.0) && yaw.mode != YawMode::fixed) {
+      yaw.start_rad = wanted_yaw_rad(request.start, yaw).value_or(yaw_rad_);
+    }
+    const auto curve = plan_yaw(trajectory, yaw);
     if (!curve) return curve.error();
     yaw_rad_ = curve->yaw_rad(curve->duration_s());
     m.yaw_step(curve->step_s);

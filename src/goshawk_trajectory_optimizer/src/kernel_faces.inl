@@ -102,7 +102,7 @@ void pull_faces(SplineState& w, double mu) {
     Lanes pull[3] = {};
     for (int i = range.begin; i < range.end; ++i) {
       FaceLanes& f = w.faces[i];
-      f.target = (mu - f.target) * f.inverse_s;
+      f.target = (mu - w.trust * f.target) * f.inverse_s;
       const Lanes c = f.target + f.weight * f.residual;
       pull[0] += c * f.nx;
       pull[1] += c * f.ny;

@@ -60,7 +60,8 @@ GOSHAWK_INLINE void scatter(const LimitLanes& l, LimitSums& to, bool scale, Join
 }
 
 struct LimitTotals {
-  Lanes gap = {}, proof = {}, worst = {}, outside = {}, dual_eta = {}, pull_eta = {}, hessian_eta = {};
+  Lanes gap = {}, proof = {}, worst = {}, outside = {}, dual_eta = {}, pull_eta = {},
+        hessian_eta = {};
 };
 
 template <bool Over>
@@ -178,7 +179,7 @@ void pull_limits(SplineState& w, const LimitSet& set, double mu) {
       auto& row = l.row[r];
       const Along a = along<Over>(w, set, l, r, dy, de);
       row.residual += w.reach * w.reach * a.bend;  // the predictor's second order
-      row.target = (mu - row.target) * row.inverse_s;
+      row.target = (mu - w.trust * row.target) * row.inverse_s;
       const Lanes c = row.target + row.weight * row.residual;
       pull_eta += c * row.slope_e;
       for (int i = 0; i < 3; ++i) pull[i] += c * (2.0 * g * set.weights[r][i] * l.y[i]);

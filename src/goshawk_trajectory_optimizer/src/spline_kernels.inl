@@ -2,8 +2,8 @@
 // inside an unnamed namespace: nothing here may be shared between them.
 
 #include "kernel_faces.inl"
-#include "kernel_limits.inl"
 #include "kernel_factor.inl"
+#include "kernel_limits.inl"
 
 void start_sums(SplineState& w) {
   w.objective = w.time_weight * w.eta;
@@ -93,6 +93,10 @@ double predict(SplineState& w) {
   worst = larger(worst, predict_limits<true>(w, w.acceleration));
   if (w.jerk_limit.lanes != nullptr) worst = larger(worst, predict_limits<true>(w, w.jerk_limit));
   w.reach = worst > 1.0 ? 1.0 / worst : 1.0;
+  // What a predictor promises that ends at once is not worth correcting: it can go round in
+  // circles.
+  constexpr double kShort = 0.1;
+  w.trust = w.reach < kShort ? 0.0 : 1.0;
   return w.reach;
 }
 

@@ -45,16 +45,14 @@ SplineSolver::Outcome SplineSolver::solve(const SplineProblem& problem, const Se
 }
 
 // Relaxes the limits of a problem with fixed durations by an unknown eta, which always has an
-// answer inside the polytopes, and bounds the least eta from below. Above 1: infeasible.
+// answer inside the polytopes, and bounds the least eta from below. Above 1: infeasible. What is
+// infeasible by a hair needs an exact bound.
 bool SplineSolver::needs_more_time(const SplineProblem& problem, const Settings& settings,
                                    Outcome& out) {
-  constexpr double kSmooth = 1e-3;  // what the jerk may add to eta within the limits
-  relaxed_ = problem;
-  relaxed_.scale = true;
-  relaxed_.time_weight = 1.0;
-  relaxed_.jerk_weight = 1.0;
-  relaxed_.start_rate.setZero();
-  relaxed_.goal_rate.setZero();
+  struct Accuracy {
+    double smooth;  // what the jerk may add to eta within the limits
+    double gap;
+  };
   // Jerk points are differences of acceleration points: |j| <= 6 a_max / T, in every norm here
   // up to sqrt(3).
   double jerk_bound = 0.0;
@@ -62,20 +60,31 @@ bool SplineSolver::needs_more_time(const SplineProblem& problem, const Settings&
     const double T = problem.durations[k];
     jerk_bound += 0.5 * T * std::pow(6.0 * std::sqrt(3.0) * problem.a_max[k] / T, 2);
   }
-  relaxed_.jerk_weight = kSmooth / jerk_bound;
-  memory_->load(relaxed_);
-  memory_->start();
-  Settings coarse = settings;
-  coarse.gap = 1e-3;
-  coarse.feasibility = 1e-6;
-  coarse.limit_feasibility = 1e-3;
-  coarse.dual_feasibility = 1e-4;
-  Outcome relaxed;
-  iterate(coarse, relaxed);
-  out.iterations += relaxed.iterations;
-  if (relaxed.status != Status::solved) return false;
-  const SplineState& s = memory_->state;
-  return s.objective + s.proof - s.gap > 1.0 + kSmooth;
+  relaxed_ = problem;
+  relaxed_.scale = true;
+  relaxed_.time_weight = 1.0;
+  relaxed_.start_rate.setZero();
+  relaxed_.goal_rate.setZero();
+  for (const Accuracy accuracy : {Accuracy{1e-3, 1e-3}, Accuracy{1e-7, 1e-8}}) {
+    relaxed_.jerk_weight = accuracy.smooth / jerk_bound;
+    memory_->load(relaxed_);
+    memory_->start();
+    Settings coarse = settings;
+    coarse.gap = accuracy.gap;
+    coarse.feasibility = 1e-6;
+    coarse.limit_feasibility = accuracy.gap;
+    coarse.dual_feasibility = 0.1 * accuracy.gap;
+    Outcome relaxed;
+    iterate(coarse, relaxed);
+    out.iterations += relaxed.iterations;
+    if (relaxed.status != Status::solved) return false;
+    const SplineState& s = memory_->state;
+    constexpr double kReach = 10.0;  // of unknowns that could do better, at the dual residual
+    const double slope = kReach * s.dual_residual;
+    if (s.objective + s.proof - s.gap > 1.0 + accuracy.smooth + slope) return true;
+    if (s.eta < 1.0 - 10.0 * accuracy.gap) return false;
+  }
+  return false;
 }
 
 double SplineSolver::lagrangian(const std::vector<Joint>& joints, double eta) {

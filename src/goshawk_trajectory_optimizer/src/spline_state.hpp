@@ -101,6 +101,7 @@ struct SplineState {
   double proof = 0.0;                // z' (f + s)
   double face_violation = 0.0, limit_violation = 0.0;
   double reach = 1.0;    // step of the predictor to the boundary, at most 1
+  double trust = 1.0;    // in the predictor's second order: 0 or 1
   double product = 0.0;  // ds'dz of the predictor
 };
 

@@ -18,18 +18,6 @@ std::optional<double> direction(const Vec3& v, double least) {
   return std::atan2(v.y(), v.x());
 }
 
-std::optional<double> wanted(const FlatState& state, const YawRequest& request) {
-  switch (request.mode) {
-    case YawMode::fixed:
-      return request.fixed_rad;
-    case YawMode::towards_point:
-      return direction(request.point_map - state.position, kLeastDistance_m);
-    case YawMode::along_motion:
-      break;
-  }
-  return direction(state.velocity, kLeastSpeed_m_s);
-}
-
 // The shorter way round.
 double turn(double from, double to) {
   return std::remainder(to - from, 2.0 * std::numbers::pi);
@@ -49,6 +37,18 @@ Status check(const Trajectory& trajectory, const YawRequest& r) {
 }
 
 }  // namespace
+
+std::optional<double> wanted_yaw_rad(const FlatState& state, const YawRequest& request) {
+  switch (request.mode) {
+    case YawMode::fixed:
+      return request.fixed_rad;
+    case YawMode::towards_point:
+      return direction(request.point_map - state.position, kLeastDistance_m);
+    case YawMode::along_motion:
+      break;
+  }
+  return direction(state.velocity, kLeastSpeed_m_s);
+}
 
 double YawCurve::duration_s() const {
   return step_s * double(points_rad.size() - 2);
@@ -96,7 +96,7 @@ Result<YawCurve> plan_yaw(const Trajectory& trajectory, const YawRequest& reques
       begin_s += trajectory.pieces[piece++].duration_s;
     }
     const BezierPiece& p = trajectory.pieces[piece];
-    const auto goal = wanted(p.sample(std::min(t - begin_s, p.duration_s)), request);
+    const auto goal = wanted_yaw_rad(p.sample(std::min(t - begin_s, p.duration_s)), request);
     const double now = curve.points_rad.back();
     const double step = goal ? std::clamp(turn(now, *goal), -most, most) : 0.0;
     curve.points_rad.push_back(now + step);

@@ -69,6 +69,21 @@ TEST(Yaw, LooksAtAPointItFliesPast) {
   }
 }
 
+TEST(Yaw, WhereThereIsNothingToLookAtThereIsNoWish) {
+  FlatState state;
+  state.position = Vec3(1, 1, 1);
+  YawRequest motion{.mode = YawMode::along_motion};
+  EXPECT_FALSE(wanted_yaw_rad(state, motion));
+  state.velocity = Vec3(0, 0, 2);
+  EXPECT_FALSE(wanted_yaw_rad(state, motion));
+  state.velocity = Vec3(0, -1, 2);
+  EXPECT_NEAR(wanted_yaw_rad(state, motion).value(), -std::numbers::pi / 2.0, 1e-12);
+  YawRequest point{.mode = YawMode::towards_point, .point_map = Vec3(1, 1, 5)};
+  EXPECT_FALSE(wanted_yaw_rad(state, point));
+  point.point_map = Vec3(2, 2, 0);
+  EXPECT_NEAR(wanted_yaw_rad(state, point).value(), std::numbers::pi / 4.0, 1e-12);
+}
+
 TEST(Yaw, RefusesNonsense) {
   const auto trajectory = fly(test::straight_corridor(2.0)).trajectory;
   EXPECT_EQ(plan_yaw({}, {}).code(), ErrorCode::invalid_input);

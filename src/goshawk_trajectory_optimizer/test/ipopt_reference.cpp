@@ -36,7 +36,9 @@ struct Dense {
   int nonzeros = 0;  // of the Jacobian
 
   void find_columns() {
+    nonzeros = 0;
     for (Row& row : rows) {
+      row.columns.clear();
       for (int j = 0; j < n; ++j) {
         const bool squared = row.R.rows() > 0 && !row.R.col(j).isZero(0.0);
         if (row.l[j] != 0.0 || squared) row.columns.push_back(j);
@@ -91,16 +93,16 @@ class Spline {
 void add_limit(Dense& dense, const SplineProblem& problem, const MatrixXd& R, const VectorXd& c,
                double limit, bool velocity) {
   const int n = dense.n;
-  const auto add = [&](const MatrixXd& part, const VectorXd& offset) {
-    Row row{part, offset, VectorXd::Ones(part.rows()), VectorXd::Zero(n), limit * limit};
+  const auto add = [&](const MatrixXd& part, const VectorXd& offset, double most) {
+    Row row{part, offset, VectorXd::Ones(part.rows()), VectorXd::Zero(n), most * most};
     if (problem.scale) {
       row.bound = 0.0;
       if (velocity) {
-        row.l[n - 1] = -limit * limit;
+        row.l[n - 1] = -most * most;
       } else {
         row.R.conservativeResize(part.rows() + 1, n);
         row.R.row(part.rows()).setZero();
-        row.R(part.rows(), n - 1) = limit;
+        row.R(part.rows(), n - 1) = most;
         row.c.conservativeResize(part.rows() + 1);
         row.c[part.rows()] = 0.0;
         row.sign.conservativeResize(part.rows() + 1);
@@ -110,8 +112,17 @@ void add_limit(Dense& dense, const SplineProblem& problem, const MatrixXd& R, co
     dense.rows.push_back(row);
   };
   if (R.isZero(0.0)) return;
-  if (problem.norm == LimitNorm::euclidean) return add(R, c);
-  for (int i = 0; i < 3; ++i) add(R.row(i), c.segment(i, 1));
+  switch (problem.norm) {
+    case LimitNorm::euclidean:
+      return add(R, c, limit);
+    case LimitNorm::per_axis:
+      for (int i = 0; i < 3; ++i) add(R.row(i), c.segment(i, 1), limit);
+      return;
+    case LimitNorm::horizontal_vertical:
+      add(R.topRows(2), c.head(2), limit);
+      add(R.row(2), c.tail(1),
+          limit / (velocity ? problem.v_over_vertical : problem.a_over_vertical));
+  }
 }
 
 Dense densify(const SplineProblem& problem, const std::vector<Polytope>& polytopes) {
@@ -215,11 +226,11 @@ Bool hessian(Index n, Number*, Bool, Number factor, Index m, Number* lambda, Boo
       const int count = std::min(18, n - first);
       const auto R = row.R.middleCols(first, count);
       H.block(first, first, count, count) +=
-          2.0 * lambda[i] * R.transpose() * row.sign.asDiagonal() * R;
+          2.0 * std::max(lambda[i], 0.0) * R.transpose() * row.sign.asDiagonal() * R;
       // The square of eta stands apart from the columns of the joints.
       if (first + count < n) {
         const VectorXd last = row.R.col(n - 1);
-        H(n - 1, n - 1) += 2.0 * lambda[i] * last.cwiseAbs2().dot(row.sign);
+        H(n - 1, n - 1) += 2.0 * std::max(lambda[i], 0.0) * last.cwiseAbs2().dot(row.sign);
       }
     }
   }
@@ -249,46 +260,97 @@ void set_options(IpoptProblem ipopt) {
   };
   integer("print_level", 0);
   text("sb", "yes");
-  number("tol", 1e-10);
+  number("tol", 1e-9);
+  number("acceptable_tol", 1e-8);
+  integer("acceptable_iter", 3);
+  // Multipliers stay above zero, and the Hessian of a convex problem positive.
+  number("constr_mult_init_max", 0.0);
+  text("alpha_for_y", "bound-mult");
   number("bound_relax_factor", 0.0);
-  integer("max_iter", 300);
+  integer("max_iter", 100);
+}
+
+// @param x in: where to begin; out: the answer
+// @param lower of the last unknown
+bool minimise(Dense& dense, double lower, VectorXd& x, double& objective) {
+  const int n = dense.n;
+  const int m = int(dense.rows.size());
+  dense.find_columns();
+  VectorXd at_least = VectorXd::Constant(n, -1e20);
+  VectorXd at_most = VectorXd::Constant(n, 1e20);
+  at_least[n - 1] = lower;
+  VectorXd row_lower = VectorXd::Constant(m, -1e20);
+  VectorXd row_upper(m);
+  for (int i = 0; i < m; ++i) row_upper[i] = dense.rows[std::size_t(i)].bound;
+  IpoptProblem ipopt = CreateIpoptProblem(n, at_least.data(), at_most.data(), m, row_lower.data(),
+                                          row_upper.data(), dense.nonzeros, n * (n + 1) / 2, 0,
+                                          evaluate, constraints, gradient, jacobian, hessian);
+  set_options(ipopt);
+  const auto status =
+      IpoptSolve(ipopt, x.data(), nullptr, &objective, nullptr, nullptr, nullptr, &dense);
+  FreeIpoptProblem(ipopt);
+  return status == Solve_Succeeded || status == Solved_To_Acceptable_Level;
+}
+
+// Most rows do not matter. The optimum under some of them is the optimum under all where it breaks
+// none; what it breaks is added. @return false where Ipopt did not solve a round
+bool minimise_under_all(const Dense& all, double lower, VectorXd& x, double& objective) {
+  constexpr double kBroken = 1e-10;
+  Dense some{all.n, all.P, all.q, all.constant, {}};
+  std::vector<bool> taken(all.rows.size());
+  for (;;) {
+    bool broken = some.rows.empty();
+    for (std::size_t i = 0; i < all.rows.size(); ++i) {
+      const Row& row = all.rows[i];
+      if (taken[i] || row.value(x) <= row.bound + kBroken * (1.0 + std::abs(row.bound))) continue;
+      taken[i] = broken = true;
+      some.rows.push_back(row);
+    }
+    if (!broken) return true;
+    if (!minimise(some, lower, x, objective)) return false;
+  }
 }
 
 }  // namespace
 
 ReferenceAnswer solve_with_ipopt(const SplineProblem& problem,
                                  const std::vector<Polytope>& polytopes) {
-  Dense dense = densify(problem, polytopes);
-  dense.find_columns();
-  const int n = dense.n;
-  const int m = int(dense.rows.size());
-  VectorXd lower = VectorXd::Constant(n, -1e20);
-  VectorXd upper = VectorXd::Constant(n, 1e20);
-  if (problem.scale) lower[n - 1] = 0.0;
-  VectorXd row_lower = VectorXd::Constant(m, -1e20);
-  VectorXd row_upper(m);
-  for (int i = 0; i < m; ++i) row_upper[i] = dense.rows[std::size_t(i)].bound;
-  VectorXd x = VectorXd::Zero(n);
+  const Dense dense = densify(problem, polytopes);
+  VectorXd x = VectorXd::Zero(dense.n);
   for (int k = 1; k < problem.pieces(); ++k) {
     Eigen::Map<Joint>(x.data() + 9 * (k - 1)) = problem.joints[std::size_t(k)];
   }
-  if (problem.scale) x[n - 1] = 2.0;
-  IpoptProblem ipopt = CreateIpoptProblem(n, lower.data(), upper.data(), m, row_lower.data(),
-                                          row_upper.data(), dense.nonzeros, n * (n + 1) / 2, 0,
-                                          evaluate, constraints, gradient, jacobian, hessian);
-  set_options(ipopt);
+  if (problem.scale) x[dense.n - 1] = 2.0;
   ReferenceAnswer answer;
-  const auto status =
-      IpoptSolve(ipopt, x.data(), nullptr, &answer.objective, nullptr, nullptr, nullptr, &dense);
-  FreeIpoptProblem(ipopt);
-  answer.solved = status == Solve_Succeeded;
-  answer.infeasible = status == Infeasible_Problem_Detected;
-  if (problem.scale) answer.eta = x[n - 1];
+  answer.solved = minimise_under_all(dense, problem.scale ? 0.0 : -1e20, x, answer.objective);
+  if (problem.scale) answer.eta = x[dense.n - 1];
   answer.joints = problem.joints;
   for (int k = 1; k < problem.pieces(); ++k) {
     answer.joints[std::size_t(k)] = Eigen::Map<Joint>(x.data() + 9 * (k - 1));
   }
   return answer;
+}
+
+double least_violation_with_ipopt(const SplineProblem& problem,
+                                  const std::vector<Polytope>& polytopes) {
+  Dense dense = densify(problem, polytopes);
+  const int n = ++dense.n;
+  dense.P = MatrixXd::Zero(n, n);
+  dense.q = VectorXd::Unit(n, n - 1);
+  dense.constant = 0.0;
+  for (Row& row : dense.rows) {
+    row.R.conservativeResize(Eigen::NoChange, n);
+    row.R.col(n - 1).setZero();
+    row.l.conservativeResize(n);
+    row.l[n - 1] = -1.0;
+  }
+  VectorXd x = VectorXd::Zero(n);
+  for (int k = 1; k < problem.pieces(); ++k) {
+    Eigen::Map<Joint>(x.data() + 9 * (k - 1)) = problem.joints[std::size_t(k)];
+  }
+  for (const Row& row : dense.rows) x[n - 1] = std::max(x[n - 1], 1.0 + row.value(x) - row.bound);
+  double violation = 0.0;
+  return minimise_under_all(dense, -1.0, x, violation) ? violation : 0.0;
 }
 
 }  // namespace goshawk::trajectory_optimizer::test

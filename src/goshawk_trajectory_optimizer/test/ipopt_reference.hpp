@@ -11,7 +11,6 @@ namespace goshawk::trajectory_optimizer::test {
 
 struct ReferenceAnswer {
   bool solved = false;
-  bool infeasible = false;
   double objective = 0.0;
   double eta = 1.0;
   std::vector<Joint> joints;
@@ -20,5 +19,10 @@ struct ReferenceAnswer {
 /// @param polytopes in the problem's units, one for each piece. Ends at rest where it scales.
 ReferenceAnswer solve_with_ipopt(const SplineProblem& problem,
                                  const std::vector<Polytope>& polytopes);
+
+/// The least t for which every constraint holds when its bound is raised by t; above zero, no
+/// trajectory exists. Never below -1.
+double least_violation_with_ipopt(const SplineProblem& problem,
+                                  const std::vector<Polytope>& polytopes);
 
 }  // namespace goshawk::trajectory_optimizer::test

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 
 #include "corridor_maker.hpp"
 #include "goshawk/trajectory_optimizer/plan.hpp"
@@ -20,6 +21,7 @@ struct Instance {
   Plan plan;
   SplineProblem problem;
   Units units;
+  bool inside = true;  // of what the ends alone decide
 
   Request request() const { return {corridor, start, goal, limits}; }
   std::vector<Polytope> polytopes_in_units() const {
@@ -33,6 +35,20 @@ struct Instance {
   }
 };
 
+// A limit of a random kind.
+Limits random_limits(Random& random) {
+  Limits limits{.v_max_m_s = random.uniform(0.5, 4.0), .a_max_m_s2 = random.uniform(0.5, 4.0)};
+  constexpr LimitNorm kNorms[] = {LimitNorm::euclidean, LimitNorm::per_axis,
+                                  LimitNorm::horizontal_vertical};
+  limits.norm = kNorms[random.below(3)];
+  if (limits.norm == LimitNorm::horizontal_vertical) {
+    limits.v_max_vertical_m_s = random.uniform(0.3, 2.0);
+    limits.a_max_vertical_m_s2 = random.uniform(0.3, 2.0);
+  }
+  return limits;
+}
+
+// With fixed durations some fly already.
 Instance random_instance(Random& random, bool scale, double stretch) {
   Instance i;
   test::CorridorKind kind;
@@ -43,16 +59,18 @@ Instance random_instance(Random& random, bool scale, double stretch) {
   i.corridor = test::random_corridor(random, kind);
   i.start = at_rest(i.corridor.waypoints_map.front());
   i.goal = at_rest(i.corridor.waypoints_map.back());
-  i.limits = {.v_max_m_s = random.uniform(0.5, 4.0),
-              .a_max_m_s2 = random.uniform(0.5, 4.0),
-              .norm = random.chance(0.5) ? LimitNorm::euclidean : LimitNorm::per_axis};
+  i.limits = random_limits(random);
+  if (!scale && random.chance(0.3)) {
+    i.start.velocity = random.uniform(0.0, 0.3) * test::random_direction(random);
+    i.start.acceleration = random.uniform(0.0, 0.3) * test::random_direction(random);
+  }
   Config config;
   config.min_pieces = 2;
   config.piece_duration_s = random.uniform(2.0, 10.0);
   i.plan = cut_trapezoid(i.request(), config);
   for (double& duration : i.plan.durations_s) duration *= stretch * random.uniform(0.8, 1.25);
-  make_problem(i.request(), i.plan, scale, std::pow(10.0, random.uniform(-2.0, 2.0)), HUGE_VAL,
-               i.problem, i.units);
+  i.inside = make_problem(i.request(), i.plan, scale, std::pow(10.0, random.uniform(-2.0, 2.0)),
+                          HUGE_VAL, i.problem, i.units);
   return i;
 }
 
@@ -64,50 +82,70 @@ double difference(const std::vector<Joint>& a, const std::vector<Joint>& b) {
   return largest;
 }
 
+// Every instance is decided, and as Ipopt decides.
 TEST(SplineSolver, FixedDurationsGiveIpoptsObjectiveAndSolution) {
   Random random(5);
   SplineSolver solver;
-  int compared = 0;
-  for (int n = 0; n < 160; ++n) {
+  int compared = 0, infeasible = 0;
+  for (int n = 0; n < 800; ++n) {
     SCOPED_TRACE(n);
     const auto instance = random_instance(random, false, random.uniform(1.0, 3.0));
+    if (!instance.inside) continue;
     // Flat optima: the solution is as near as the square root of the gap.
     const auto outcome = solver.solve(instance.problem, {.gap = 1e-10});
-    const auto truth = test::solve_with_ipopt(instance.problem, instance.polytopes_in_units());
+    const auto polytopes = instance.polytopes_in_units();
     if (outcome.status == SplineSolver::Status::infeasible) {
-      EXPECT_FALSE(truth.solved);
+      ++infeasible;
+      const bool confirmed = test::least_violation_with_ipopt(instance.problem, polytopes) > 0.0 ||
+                             !test::solve_with_ipopt(instance.problem, polytopes).solved;
+      EXPECT_TRUE(confirmed);
       continue;
     }
     ASSERT_EQ(outcome.status, SplineSolver::Status::solved)
-        << outcome.iterations << " iterations, gap " << outcome.gap << " of " << outcome.objective
-        << ", residuals " << outcome.primal_residual << " " << outcome.dual_residual << ", Ipopt "
-        << (truth.solved ? "solved" : "did not solve") << " it, " << truth.objective;
-    if (!truth.solved) continue;
+        << outcome.iterations << " iterations, gap " << outcome.gap << " of " << outcome.objective;
+    const auto truth = test::solve_with_ipopt(instance.problem, polytopes);
+    ASSERT_TRUE(truth.solved);
     ++compared;
     EXPECT_NEAR(outcome.objective, truth.objective, 1e-6 * (1.0 + std::abs(truth.objective)));
     EXPECT_LT(difference(solver.joints(), truth.joints), 1e-3);
     EXPECT_LE(outcome.primal_residual, 1e-9);
     EXPECT_LE(outcome.gap, 1e-10 * outcome.objective + 1e-12);
   }
-  EXPECT_GE(compared, 100);
+  EXPECT_GE(compared, 700);
+  EXPECT_GE(infeasible, 10);
 }
 
 TEST(SplineSolver, TimeAndShapeTogetherGiveIpoptsObjectiveAndTimeScale) {
   Random random(6);
   SplineSolver solver;
-  int compared = 0;
-  for (int n = 0; n < 50; ++n) {
+  for (int n = 0; n < 250; ++n) {
     SCOPED_TRACE(n);
     const auto instance = random_instance(random, true, 1.0);
     const auto outcome = solver.solve(instance.problem, {});
     ASSERT_EQ(outcome.status, SplineSolver::Status::solved);
     const auto truth = test::solve_with_ipopt(instance.problem, instance.polytopes_in_units());
-    if (!truth.solved) continue;
-    ++compared;
+    ASSERT_TRUE(truth.solved);
     EXPECT_NEAR(outcome.objective, truth.objective, 1e-6 * (1.0 + std::abs(truth.objective)));
     EXPECT_NEAR(outcome.eta, truth.eta, 1e-4 * truth.eta);
   }
-  EXPECT_GE(compared, 40);
+}
+
+// No answer is left open: what is not solved is proved infeasible, also where it is so by a hair.
+TEST(SplineSolver, DecidesThousandsOfInstances) {
+  SplineSolver solver;
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    Random random(seed);
+    for (int n = 0; n < 3000; ++n) {
+      const bool scale = n % 2 == 0;
+      const auto instance = random_instance(random, scale, scale ? 1.0 : random.uniform(0.5, 3.0));
+      if (!instance.inside) continue;
+      const auto outcome = solver.solve(instance.problem, {.gap = 1e-10});
+      const bool decided = outcome.status == SplineSolver::Status::solved ||
+                           (!scale && outcome.status == SplineSolver::Status::infeasible);
+      ASSERT_TRUE(decided) << "seed " << seed << ", instance " << n << ": " << outcome.iterations
+                           << " iterations, gap " << outcome.gap << " of " << outcome.objective;
+    }
+  }
 }
 
 // Central differences of the Lagrangian, in every unknown: the Karush-Kuhn-Tucker conditions, and

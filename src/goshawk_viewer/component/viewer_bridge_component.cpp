@@ -65,6 +65,16 @@ ServerOptions server_options(const Config& c) {
   return options;
 }
 
+/// Foxglove's panels write times as {sec, nsec}, as ROS 1 did. Nested no deeper than any type is.
+void rename_nanoseconds(nlohmann::ordered_json& value, int depth = 0) {
+  if (!value.is_object() || depth > 20) return;
+  if (value.size() == 2 && value.contains("sec") && value.contains("nsec")) {
+    value = {{"sec", value["sec"]}, {"nanosec", value["nsec"]}};
+    return;
+  }
+  for (auto& [name, inner] : value.items()) rename_nanoseconds(inner, depth + 1);
+}
+
 /// A topic of the domain: read from the first subscription on.
 struct Topic {
   std::string name;
@@ -120,7 +130,8 @@ class ViewerBridgeComponent : public Component {
   void look_around() {
     std::map<std::string, Topic> found;
     for (const auto& e : context_->endpoints()) {
-      if (!e.writer || known_.contains(e.topic)) continue;
+      // Where clients may publish there may be readers alone; Foxglove needs the type to publish.
+      if ((!e.writer && !may_publish(e.topic)) || known_.contains(e.topic)) continue;
       const auto type = introspection::find_type(e.type);
       if (!type) continue;
       Topic& topic = found.try_emplace(e.topic).first->second;
@@ -136,6 +147,12 @@ class ViewerBridgeComponent : public Component {
                           introspection::ros_msg_definition(*topic.type)});
       topics_.emplace(id, std::move(topic));
     }
+  }
+
+  bool may_publish(const std::string& topic) const {
+    const auto allowed = split(config_.publish_topics);
+    const std::string name = topic.starts_with('/') ? topic.substr(1) : topic;
+    return allowed.contains("any") || allowed.contains(name) || allowed.contains("/" + name);
   }
 
   void serve() {
@@ -184,12 +201,14 @@ class ViewerBridgeComponent : public Component {
   /// @return where the client's messages go, or nullptr: then the client was told why
   RawPublisher* publisher_for(const ClientEvent& event) {
     const std::string name = event.topic.starts_with('/') ? event.topic.substr(1) : event.topic;
+    // Viewers offer more than is ever sent: Foxglove's 3D panel alone three topics.
+    const bool sends = event.kind == ClientEvent::Kind::published;
+    const auto level = sends ? StatusLevel::error : StatusLevel::info;
     const auto refuse = [&](const std::string& why) {
-      server_->tell(event.client, StatusLevel::error, event.topic.substr(0, 100) + ": " + why);
+      server_->tell(event.client, level, event.topic.substr(0, 100) + ": " + why);
       return nullptr;
     };
-    const auto allowed = split(config_.publish_topics);
-    if (!allowed.contains("any") && !allowed.contains(name) && !allowed.contains("/" + name)) {
+    if (!may_publish(name)) {
       return refuse("clients may not publish there; publish_topics allows " +
                     config_.publish_topics);
     }
@@ -233,8 +252,9 @@ class ViewerBridgeComponent : public Component {
       if (auto json = introspection::cdr_to_json(type, event.bytes); !json) return json.error();
       return event.bytes;
     }
-    const auto json =
+    auto json =
         nlohmann::ordered_json::parse(event.bytes.begin(), event.bytes.end(), nullptr, false);
+    rename_nanoseconds(json);
     if (json.is_discarded()) return fail(ErrorCode::invalid_input, "this is no JSON");
     return introspection::json_to_cdr(type, json);
   }

@@ -106,7 +106,7 @@ struct Server::Impl {
     send_text(client, {{"op", "serverInfo"},
                        {"name", options.name},
                        {"capabilities", {"clientPublish"}},
-                       {"supportedEncodings", {"cdr", "json"}},
+                       {"supportedEncodings", {"json", "cdr"}},
                        {"metadata", Json::object()}});
     Json list = Json::array();
     for (const auto& [id, channel] : channels) list.push_back(to_json(channel));

@@ -30,7 +30,8 @@ struct Report {
 };
 
 struct Options {
-  std::string stage;  // path_search, corridor_builder, trajectory_optimizer
+  std::string stage;  // path_search, corridor_builder, trajectory_optimizer, tracker, map_server
+  std::string input = {};  // MCAP file with inputs to examine beside the generated ones; or none
   std::string node_namespace = "/";
   int requests = 40;       // good ones
   std::uint64_t seed = 1;  // of the world and the requests
@@ -45,7 +46,7 @@ std::vector<std::string> stages();
 /// Stands in for all neighbours of the stage: sends a map and requests, good and bad, and examines
 /// every answer. Requests are the same for the same seed.
 /// @return invalid_parameter for a stage that is not known, stage_silent where nobody reads its
-/// input within ready_timeout_s
+/// input within ready_timeout_s, io_failed or invalid_input where the recording will not do
 Result<Report> conform(runtime::Context& context, const Options& options);
 
 }  // namespace goshawk::conformance

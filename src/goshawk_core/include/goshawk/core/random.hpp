@@ -5,7 +5,7 @@
 namespace goshawk {
 
 /// SplitMix64 (Steele, Lea, Flood 2014): the same numbers on every machine and compiler, which
-/// the distributions of <random> do not promise. The seed is always an argument.
+/// the standard library's distributions do not promise. The seed is always an argument.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}

@@ -38,7 +38,7 @@ class Writer {
 
   /// @return the new schema's id. @throws std::length_error beyond 65535 of them
   std::uint16_t add_schema(std::string name, std::string encoding, std::string data);
-  /// @param schema_id as add_schema gave it, or 0 for none
+  /// @param channel with schema_id as add_schema gave it, or 0 for none; its own id is ignored
   /// @return the new channel's id. @throws std::length_error, std::invalid_argument
   std::uint16_t add_channel(Channel channel);
 

@@ -21,7 +21,8 @@ class PositionHold {
   /// Moves the place where it hovers down by step_m, to floor_map_m at the lowest.
   void lower(double step_m, double floor_map_m);
 
-  ThrustAttitude step(const RigidBodyState& state);
+  /// @param disturbance_map [m/s^2] what wind and drag do to the vehicle; compensated
+  ThrustAttitude step(const RigidBodyState& state, const Vec3& disturbance_map = Vec3::Zero());
 
   bool braking() const { return braking_; }
   /// [m] where it hovers; only the place of engagement while braking

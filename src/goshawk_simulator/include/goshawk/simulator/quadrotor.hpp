@@ -77,6 +77,7 @@ class Quadrotor {
   Quadrotor(const Config& config, const PlantFactory& make_plant);
   void step();
   ThrustAttitude onboard_target();
+  void learn_disturbance(const Vec3& last_velocity_map);
   void watch_commands();
   void try_to_land();
 
@@ -88,6 +89,7 @@ class Quadrotor {
   Sensor sensor_;
   PositionHold hold_;
   LandingGuard guard_;
+  Vec3 disturbance_map_ = Vec3::Zero();  // [m/s^2] as its inertial sensors tell, smoothed
   Error not_landing_{ErrorCode::ok, ""};
   ThrustAttitude command_;
   Control control_ = Control::failsafe;

@@ -17,7 +17,13 @@ struct CommittedTrajectory {
   FlatState start;                 // what it was asked to begin with
   FlatState goal;                  // and to end with
   std::int64_t start_time_ns = 0;  // [ns] on the tracker's clock; may be past
-  double yaw_rad = 0.0;            // heading for the flight
+  double yaw_rad = 0.0;            // heading for the flight, where there is no curve
+  /// Heading over time: a uniform quadratic B-spline, unwrapped; none, or three points or more.
+  double yaw_step_s = 0.0;
+  std::vector<double> yaw_points_rad = {};
+
+  /// @param t_s since the beginning, clamped to the curve @pre admit() ok
+  double yaw_at(double t_s) const;
 };
 
 }  // namespace goshawk::tracker

@@ -130,7 +130,9 @@ void describe(Self& c, Visitor&& visit) {
   visit("controller", c.controller, "",
         "pd: thesis, PD with feedforward; geometric: on SE(3), after Lee, Leok, McClamroch 2010",
         OneOf{{"pd", "geometric"}});
-  visit("yaw", c.yaw, "", "plan: the trajectory's yaw; keep: the yaw at the first odometry",
+  visit("yaw", c.yaw, "",
+        "plan: the trajectory's yaw, over time where it has a curve; keep: the yaw at the first "
+        "odometry",
         OneOf{{"plan", "keep"}});
   detail::describe_vehicle(c, visit);
   detail::describe_gains(c, visit);

@@ -110,7 +110,7 @@ class Tracker {
   void lose(std::int64_t now_ns, const std::string& why);
   std::uint64_t followed_id() const;
   double turn(std::int64_t now_ns);
-  double wanted_yaw() const;
+  double wanted_yaw(std::int64_t now_ns) const;
 
   Config config_;
   PositionController controller_;

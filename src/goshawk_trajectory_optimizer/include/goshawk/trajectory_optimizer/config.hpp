@@ -20,7 +20,7 @@ struct Config {
   double min_thrust_m_s2 = 0.0;  // [m/s^2] over the mass
   double max_tilt_rad = 0.0;     // [rad]
   std::string yaw = "none";
-  double yaw_rate_max_rad_s = 1.5;  // [rad/s]
+  double yaw_rate_max_rad_s = 0.8;  // [rad/s]
   double yaw_point_x_m = 0.0;       // [m]
   double yaw_point_y_m = 0.0;       // [m]
 };
@@ -67,7 +67,8 @@ void describe(Self& c, Visitor&& visit) {
         "where to look: none (no wish), fixed (the request's goal yaw), along_motion or "
         "towards_point",
         OneOf{{"none", "fixed", "along_motion", "towards_point"}});
-  visit("yaw_rate_max_rad_s", c.yaw_rate_max_rad_s, "rad/s", "how fast yaw may turn",
+  visit("yaw_rate_max_rad_s", c.yaw_rate_max_rad_s, "rad/s",
+        "how fast yaw may turn; the tracker's max_yaw_rate_rad_s is to be above it",
         Range::positive(100.0));
   visit("yaw_point_x_m", c.yaw_point_x_m, "m", "what towards_point looks at, map", Anything{});
   visit("yaw_point_y_m", c.yaw_point_y_m, "m", "what towards_point looks at, map", Anything{});

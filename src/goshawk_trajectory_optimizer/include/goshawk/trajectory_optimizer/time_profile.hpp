@@ -14,7 +14,7 @@ namespace goshawk::trajectory_optimizer {
 /// one trapezoid over the path instead of a stop at each waypoint).
 class TimeProfile {
  public:
-  /// @param start_speed, goal_speed [m/s] lowered where the path is too short to brake
+  /// @param start_speed_m_s, goal_speed_m_s lowered where the path is too short to brake
   /// @pre two waypoints or more, limits.check() ok
   TimeProfile(std::span<const Vec3> waypoints_map, const Limits& limits, double start_speed_m_s,
               double goal_speed_m_s);

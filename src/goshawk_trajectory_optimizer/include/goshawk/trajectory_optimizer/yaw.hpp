@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "goshawk/core/result.hpp"
@@ -31,6 +32,10 @@ struct YawCurve {
   /// [rad/s] of the whole curve
   double rate_bound_rad_s() const;
 };
+
+/// Where a request looks from a state, in (-pi, pi]; nothing where it does not say: motion that is
+/// slow or vertical, a point right above or below.
+std::optional<double> wanted_yaw_rad(const FlatState& state, const YawRequest& request);
 
 /// Turns from the start's yaw towards what is asked for as fast as the rate allows, the shorter way
 /// round, and then follows it. Where the vehicle moves up, down or hardly at all, or is over the

@@ -1,0 +1,375 @@
+#include "tracker_examiner.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "goshawk/conversions/plan.hpp"
+#include "goshawk/conversions/vehicle.hpp"
+#include "world.hpp"
+
+namespace goshawk::conformance {
+namespace {
+
+namespace msg = goshawk_msgs::msg;
+using runtime::MessageInfo;
+using runtime::Qos;
+
+constexpr std::int64_t kPeriod_ns = 10'000'000;  // of odometry
+constexpr double kMostError_m = 0.25;  // a tracker of whatever kind, in calm air, at 1 m/s
+constexpr double kBegins_in_s = 0.3;
+constexpr double kStall_s = 0.04;  // without odometry or commands: the machine's fault
+constexpr int kAttempts = 6;
+const auto kNever = [] { return false; };
+
+// Where a committed trajectory wants the vehicle, by de Casteljau.
+Vec3 wanted(const msg::CommittedTrajectory& m, double time_s) {
+  const auto& pieces = m.trajectory().pieces();
+  std::size_t k = 0;
+  time_s = std::max(0.0, time_s);
+  while (k + 1 < pieces.size() && time_s > pieces[k].duration()) time_s -= pieces[k++].duration();
+  const double u = std::min(1.0, time_s / pieces[k].duration());
+  Vec3 points[6];
+  for (std::size_t j = 0; j < 6; ++j) {
+    const auto& p = pieces[k].control_points()[j];
+    points[j] = Vec3(p.x(), p.y(), p.z());
+  }
+  for (int n = 5; n > 0; --n) {
+    for (int j = 0; j < n; ++j) points[j] += u * (points[j + 1] - points[j]);
+  }
+  return points[0];
+}
+
+double duration_s(const msg::CommittedTrajectory& m) {
+  double sum_s = 0.0;
+  for (const auto& piece : m.trajectory().pieces()) sum_s += piece.duration();
+  return sum_s;
+}
+
+msg::Polytope box_around(const Vec3& a, const Vec3& b, double margin_m) {
+  msg::Polytope box;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double side : {1.0, -1.0}) {
+      Vec3 normal = Vec3::Zero();
+      normal[axis] = side;
+      box.normals().insert(box.normals().end(), normal.data(), normal.data() + 3);
+      box.offsets().push_back(std::max(side * a[axis], side * b[axis]) + margin_m);
+    }
+  }
+  return box;
+}
+
+}  // namespace
+
+TrackerExaminer::TrackerExaminer(runtime::Context& context, const Options& options)
+    : options_(options),
+      node_(context, "goshawk_conform", in_namespace(options.node_namespace)),
+      listener_(node_, options.stage),
+      odometry_(node_.advertise<nav_msgs::msg::Odometry>("odom", Qos::best_effort())),
+      commits_(node_.advertise<Committed>("committed_trajectory", Qos::latched())) {
+  vehicle_.position_map = Vec3(1.0, 2.0, 1.5);
+  node_.subscribe<msg::ThrustAttitude>(
+      "command", Qos::best_effort(10),
+      [this](const msg::ThrustAttitude& m, const MessageInfo& i) { take(m, i.received_ns); });
+  node_.subscribe<msg::TrackingState>("tracking_state", Qos::best_effort(),
+                                      [this](const auto& m, const auto&) { state_ = m; });
+}
+
+Result<Report> TrackerExaminer::examine(const std::vector<Committed>& recorded) {
+  const std::int64_t end_ns = node_.now_ns() + std::int64_t(options_.ready_timeout_s * 1e9);
+  while (odometry_.matched() == 0 && node_.now_ns() < end_ns) node_.spin_some(0.02);
+  if (odometry_.matched() == 0) {
+    return fail(ErrorCode::stage_silent, "nobody reads odom: is " + options_.stage +
+                                             " running, in this domain and namespace?");
+  }
+  report_.stage = options_.stage;
+  live(2.0, [&] { return listener_.ready(); });
+  report_.items.push_back(
+      {"says that it is ready", listener_.ready(),
+       listener_.ready() ? "" : "no stage_report of request 0 with code ok came"});
+  live(10.0 * options_.timeout_s, [&] { return commands_ >= 20; });
+  report_.items.push_back(
+      {"answers odometry with commands", commands_ >= 20, std::to_string(commands_) + " commands"});
+  if (commands_ >= 20) {
+    weigh();
+    examine_flight("flies a trajectory", [&] { return straight(Vec3(0.6, 0.3, 0.2), 3.5); });
+    examine_bad();
+    for (const auto& m : recorded) {
+      const auto& p = m.trajectory().pieces().front().control_points()[0];
+      examine_flight("flies recorded trajectory " + std::to_string(m.trajectory().request().id()),
+                     [&] {
+                       fly_to(Vec3(p.x(), p.y(), p.z()));
+                       return m;
+                     });
+    }
+    examine_bad_odometry();
+    examine_garbage();
+    examine_silence();
+  }
+  report_.items.push_back(valid_.item());
+  add_latency(report_, std::move(latencies_s_));
+  report_.implementation = listener_.implementation();
+  return report_;
+}
+
+bool TrackerExaminer::live(double timeout_s, const std::function<bool()>& done) {
+  const std::int64_t end_ns = node_.now_ns() + std::int64_t(timeout_s * 1e9);
+  while (!done() && node_.now_ns() < end_ns) {
+    if (node_.now_ns() >= next_ns_) {
+      move();
+      send_odometry();
+      next_ns_ = std::max(next_ns_ + kPeriod_ns, node_.now_ns());
+    }
+    node_.spin_some(std::clamp(double(next_ns_ - node_.now_ns()) * 1e-9, 0.0, 0.02));
+  }
+  return done();
+}
+
+// Whatever time has passed since: a stall of the machine is flown through with the last command.
+void TrackerExaminer::move() {
+  const std::int64_t now_ns = node_.now_ns();
+  const double dt_s = moved_ns_ == 0 ? 0.0 : double(now_ns - moved_ns_) * 1e-9;
+  moved_ns_ = now_ns;
+  longest_gap_s_ = std::max(longest_gap_s_, dt_s);
+  if (weight_n_ <= 0.0 || !command_) return;
+  const Vec3 thrust = command_->q_map_base * Vec3(0.0, 0.0, command_->thrust_n);
+  const Vec3 acceleration = kGravity_m_s2 / weight_n_ * thrust - Vec3(0.0, 0.0, kGravity_m_s2);
+  vehicle_.position_map += dt_s * vehicle_.velocity_map + 0.5 * dt_s * dt_s * acceleration;
+  vehicle_.velocity_map += dt_s * acceleration;
+  vehicle_.q_map_base = command_->q_map_base;
+}
+
+void TrackerExaminer::send_odometry() {
+  nav_msgs::msg::Odometry m;
+  conversions::fill_msg(vehicle_, m);
+  m.header(conversions::make_header(moved_ns_));
+  (void)odometry_.publish(m);
+}
+
+void TrackerExaminer::take(const msg::ThrustAttitude& m, std::int64_t received_ns) {
+  ++commands_;
+  if (commanded_ns_ > 0) {
+    longest_gap_s_ = std::max(longest_gap_s_, double(received_ns - commanded_ns_) * 1e-9);
+  }
+  commanded_ns_ = received_ns;
+  const auto command = conversions::from_msg(m);
+  const bool stamped = conversions::to_ns(m.header().stamp()) > 0;
+  valid_.check(command && stamped && command->thrust_n >= 0.0,
+               !command ? command.error().message
+                        : "it has no stamp, or a thrust of " + std::to_string(m.thrust()) + " N");
+  if (!command) return;
+  if (moved_ns_ > 0) latencies_s_.push_back(double(received_ns - moved_ns_) * 1e-9);
+  command_ = *command;
+}
+
+// It hovers in its place: what it asks for now is its weight.
+void TrackerExaminer::weigh() {
+  double sum_n = 0.0;
+  int count = 0;
+  const int before = commands_;
+  live(10.0 * options_.timeout_s, [&] {
+    if (commands_ > before + count && command_) {
+      ++count;
+      sum_n += command_->thrust_n;
+    }
+    return count >= 20;
+  });
+  weight_n_ = count > 0 ? sum_n / count : 0.0;
+  report_.items.push_back(
+      {"hovers with a thrust above zero", weight_n_ > 0.0, std::to_string(weight_n_) + " N"});
+}
+
+TrackerExaminer::Committed TrackerExaminer::straight(const Vec3& by, double duration_s) {
+  const Vec3 from = vehicle_.position_map;
+  const Vec3 to = from + by;
+  conversions::PlanRequest request;
+  request.start.position = from;
+  request.goal.position = to;
+  request.limits = {.v_max_m_s = 1.5, .a_max_m_s2 = 1.5};
+  request.id = 1;
+  request.stamp_ns = node_.now_ns();
+  msg::BezierPiece piece;
+  piece.duration(duration_s);
+  for (std::size_t j = 0; j < 6; ++j) {
+    piece.control_points()[j] = conversions::to_point(j < 3 ? from : to);  // rest to rest
+  }
+  Committed m;
+  m.trajectory().request(conversions::to_msg(request));
+  m.trajectory().implementation("goshawk_conform");
+  m.trajectory().pieces({piece});
+  m.trajectory().polytopes({box_around(from, to, 0.5)});
+  m.header(conversions::make_header(node_.now_ns()));
+  m.trajectory().header(m.header());
+  return m;
+}
+
+std::int64_t TrackerExaminer::commit(Committed committed, double begins_in_s) {
+  listener_.listen(++id_);
+  committed.trajectory().request().id(id_);
+  const std::int64_t now_ns = node_.now_ns();
+  const std::int64_t begin_ns = now_ns + std::int64_t(begins_in_s * 1e9);
+  committed.header().stamp(conversions::to_stamp(now_ns));
+  committed.start_time(conversions::to_stamp(begin_ns));
+  (void)commits_.publish(committed);
+  return begin_ns;
+}
+
+bool TrackerExaminer::fly_to(const Vec3& position) {
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    const Vec3 by = position - vehicle_.position_map;
+    if (by.norm() < 0.02) return true;
+    (void)fly(straight(by, std::max(3.5 * by.norm(), 4.0 * std::sqrt(by.norm()))));
+  }
+  return false;
+}
+
+TrackerExaminer::Flight TrackerExaminer::fly(const Committed& committed) {
+  Flight flight;
+  longest_gap_s_ = 0.0;
+  const std::int64_t begin_ns = commit(committed, kBegins_in_s);
+  const double lasts_s = duration_s(committed);
+  live(std::max(kBegins_in_s + lasts_s + 0.5, options_.timeout_s), [&] {
+    const double time_s = double(moved_ns_ - begin_ns) * 1e-9;
+    flight.worst_m =
+        std::max(flight.worst_m, (wanted(committed, time_s) - vehicle_.position_map).norm());
+    flight.followed |= state_.mode() == "follow" && state_.request_id() == id_;
+    return time_s > lasts_s + 0.5;
+  });
+  flight.left_m = (wanted(committed, lasts_s) - vehicle_.position_map).norm();
+  flight.accepted = !listener_.reports().empty() && listener_.reports().front().code() == "ok";
+  flight.said =
+      listener_.reports().empty() ? "no report came" : listener_.reports().back().message();
+  flight.holds = state_.mode() == "hold";
+  flight.gap_s = longest_gap_s_;
+  return flight;
+}
+
+// A machine that stalls takes odometry or commands away for so long that every tracker must give
+// up: that flight tells nothing, and is flown again.
+TrackerExaminer::Flight TrackerExaminer::fly_undisturbed(const std::function<Committed()>& make) {
+  Flight flight;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    flight = fly(make());
+    if ((flight.good() && flight.worst_m <= kMostError_m) || flight.gap_s < kStall_s) break;
+  }
+  return flight;
+}
+
+void TrackerExaminer::examine_flight(const std::string& name,
+                                     const std::function<Committed()>& make) {
+  const Flight f = fly_undisturbed(make);
+  const auto add = [&](const char* what, bool passed, const std::string& detail) {
+    report_.items.push_back({name + ": " + what, passed, detail});
+  };
+  char text[120];
+  add("accepts it", f.accepted, f.accepted ? "" : f.said);
+  std::snprintf(text, sizeof text, "largest error %.3f m; longest silence %.3f s", f.worst_m,
+                f.gap_s);
+  add("stays on it", f.worst_m <= kMostError_m, text);
+  std::snprintf(text, sizeof text, "%.3f m from its end, in mode %s", f.left_m,
+                state_.mode().c_str());
+  add("arrives and holds", f.arrived(), text);
+  add("says that it follows", f.followed,
+      f.followed ? "" : "tracking_state never named it in mode follow");
+}
+
+void TrackerExaminer::examine_bad() {
+  const auto refuse = [&](const char* name, const std::set<std::string>& codes, auto&& change,
+                          double begins_in_s = kBegins_in_s) {
+    Committed m = straight(Vec3(0.6, 0.0, 0.0), 3.0);
+    change(m);
+    commit(m, begins_in_s);
+    live(options_.timeout_s, [&] { return !listener_.reports().empty(); });
+    report_.items.push_back(listener_.refusal(name, codes));
+  };
+  const Vec3 before = vehicle_.position_map;
+  refuse("a trajectory in another frame", {"wrong_frame"}, [](Committed& m) {
+    m.header().frame_id("base_link");
+    m.trajectory().header().frame_id("base_link");
+  });
+  refuse("one without pieces", {"invalid_input"}, [](Committed& m) { m.trajectory().pieces({}); });
+  refuse("a control point that is not a number", {"invalid_input"},
+         [](Committed& m) { m.trajectory().pieces()[0].control_points()[3].y(kNan); });
+  refuse("a piece of no time", {"invalid_input"},
+         [](Committed& m) { m.trajectory().pieces()[0].duration(0.0); });
+  refuse("a piece without its polytope", {"invalid_input"},
+         [](Committed& m) { m.trajectory().pieces()[0].polytope(7); });
+  refuse("a curve that leaves its polytope", {"not_certified"},
+         [](Committed& m) { m.trajectory().polytopes()[0].offsets()[0] -= 0.8; });
+  refuse("one faster than its limits", {"not_certified"},
+         [](Committed& m) { m.trajectory().request().limits().v_max(0.5); });
+  refuse("one that ends in motion", {"not_certified"}, [](Committed& m) {
+    for (std::size_t j = 2; j < 6; ++j) {
+      auto& p = m.trajectory().pieces()[0].control_points()[j];
+      p.x(p.x() - 0.1 * double(5 - j));
+    }
+  });
+  refuse("one that begins elsewhere", {"not_at_start"}, [&](Committed& m) {
+    const Vec3 here = vehicle_.position_map;
+    vehicle_.position_map += Vec3(0.0, 3.0, 0.0);
+    m = straight(Vec3(0.6, 0.0, 0.0), 3.0);
+    vehicle_.position_map = here;
+  });
+  refuse(
+      "one that ended long ago", {"deadline_exceeded"}, [](Committed&) {}, -60.0);
+  refuse("one that no vehicle can fly", {"trajectory_infeasible"}, [&](Committed& m) {
+    m = straight(Vec3(0.6, 0.0, 0.0), 0.1);
+    m.trajectory().request().limits().v_max(1e4);
+    m.trajectory().request().limits().a_max(1e4);
+  });
+  live(0.5, kNever);
+  const double moved_m = (vehicle_.position_map - before).norm();
+  report_.items.push_back(
+      {"stays where it is meanwhile", moved_m < 0.1, std::to_string(moved_m) + " m away"});
+}
+
+void TrackerExaminer::examine_bad_odometry() {
+  for (int k = 0; k < 5; ++k) {
+    nav_msgs::msg::Odometry m;
+    conversions::fill_msg(vehicle_, m);
+    m.header(conversions::make_header(node_.now_ns()));
+    m.pose().pose().position().x(kNan);
+    (void)odometry_.publish(m);
+    node_.spin_some(0.01);
+  }
+  const int before = commands_;
+  const bool lives = live(10.0 * options_.timeout_s, [&] { return commands_ >= before + 20; });
+  report_.items.push_back({"lives on after odometry that is not a number", lives,
+                           lives ? "" : "no more commands came"});
+}
+
+// Bytes that are no message, on both inputs, then all as before.
+void TrackerExaminer::examine_garbage() {
+  const auto odometry = node_.advertise_raw(
+      "odom", runtime::raw_message_type(runtime::message_type<nav_msgs::msg::Odometry>().name()),
+      Qos::best_effort());
+  const auto commits = node_.advertise_raw(
+      "committed_trajectory", runtime::raw_message_type(runtime::message_type<Committed>().name()),
+      Qos::latched());
+  live(1.0, [&] { return odometry.matched() > 0 && commits.matched() > 0; });
+  Random random(options_.seed);
+  for (int k = 0; k < 10; ++k) {
+    std::vector<unsigned char> bytes = {0, 1, 0, 0};
+    for (int n = random.below(600); n > 0; --n) bytes.push_back((unsigned char)(random.below(256)));
+    (void)odometry.publish_raw(&bytes);
+    (void)commits.publish_raw(&bytes);
+  }
+  live(0.3, kNever);
+  const int before = commands_;
+  const bool lives = live(10.0 * options_.timeout_s, [&] { return commands_ >= before + 20; });
+  report_.items.push_back({"lives on after garbage", lives, lives ? "" : "no more commands came"});
+}
+
+// Without odometry a tracker is blind: it must not go on commanding.
+void TrackerExaminer::examine_silence() {
+  const auto wait = [&](double seconds) {
+    const std::int64_t end_ns = node_.now_ns() + std::int64_t(seconds * 1e9);
+    while (node_.now_ns() < end_ns) node_.spin_some(0.02);
+  };
+  wait(1.0);
+  const int before = commands_;
+  wait(0.5);
+  report_.items.push_back({"commands nothing without odometry", commands_ == before,
+                           std::to_string(commands_ - before) + " commands"});
+}
+
+}  // namespace goshawk::conformance

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "goshawk/core/vehicle.hpp"
+#include "nav_msgs.h"
+#include "tally.hpp"
+
+namespace goshawk::conformance {
+
+/// Stands in for the vehicle and the navigator: flies what the tracker commands (a point mass that
+/// takes thrust and attitude at once, in real time), commits trajectories good and bad, and judges
+/// the commands by where they lead.
+class TrackerExaminer {
+ public:
+  TrackerExaminer(runtime::Context& context, const Options& options);
+
+  /// @param recorded trajectories that are flown beside the generated one
+  Result<Report> examine(const std::vector<goshawk_msgs::msg::CommittedTrajectory>& recorded);
+
+ private:
+  using Committed = goshawk_msgs::msg::CommittedTrajectory;
+
+  struct Flight {
+    bool accepted = false, followed = false, holds = false;
+    std::string said;      // in the last report
+    double worst_m = 0.0;  // farthest from where it should be
+    double left_m = 0.0;   // from the end, when it is over
+    double gap_s = 0.0;    // longest without odometry or commands
+    bool arrived() const { return holds && left_m <= 0.1; }
+    bool good() const { return accepted && followed && arrived(); }
+  };
+
+  /// Flies on for at most timeout_s, or until done(). @return done()
+  bool live(double timeout_s, const std::function<bool()>& done);
+  void move();
+  void send_odometry();
+  void take(const goshawk_msgs::msg::ThrustAttitude& m, std::int64_t received_ns);
+  void weigh();
+  /// @return [ns] when it begins
+  std::int64_t commit(Committed committed, double begins_in_s);
+  /// To where the next flight begins. @return whether it is there
+  bool fly_to(const Vec3& position);
+  Flight fly(const Committed& committed);
+  Flight fly_undisturbed(const std::function<Committed()>& make);
+  /// A straight flight that begins where the vehicle is.
+  Committed straight(const Vec3& by, double duration_s);
+  /// @param make the trajectory, from where the vehicle is then
+  void examine_flight(const std::string& name, const std::function<Committed()>& make);
+  void examine_bad();
+  void examine_bad_odometry();
+  void examine_garbage();
+  void examine_silence();
+
+  const Options& options_;
+  runtime::Node node_;
+  ReportListener listener_;
+  runtime::Publisher<nav_msgs::msg::Odometry> odometry_;
+  runtime::Publisher<Committed> commits_;
+  Report report_;
+
+  RigidBodyState vehicle_;
+  double weight_n_ = 0.0;      // what it hovers with; 0: not weighed yet, it is held
+  std::int64_t moved_ns_ = 0;  // when the vehicle's state was true
+  std::int64_t next_ns_ = 0;   // of the next odometry
+  std::optional<ThrustAttitude> command_;
+  int commands_ = 0;
+  std::int64_t commanded_ns_ = 0;  // when the newest came
+  double longest_gap_s_ = 0.0;     // of odometry or commands, since a flight began
+  std::uint64_t id_ = 1000;
+  goshawk_msgs::msg::TrackingState state_;
+  Tally valid_{"commands are finite, stamped, of unit attitude"};
+  std::vector<double> latencies_s_;
+};
+
+}  // namespace goshawk::conformance

@@ -1,0 +1,141 @@
+#include <gmock/gmock.h>
+
+#include <cstring>
+
+#include "goshawk/conversions/grid.hpp"
+#include "goshawk/conversions/plan.hpp"
+#include "goshawk/conversions/vehicle.hpp"
+#include "goshawk/map_server/live_map.hpp"
+#include "goshawk/runtime/stage_reporter.hpp"
+#include "octomap_msgs.h"
+#include "sensor_msgs.h"
+#include "support.hpp"
+
+namespace goshawk::conformance_test {
+namespace {
+
+namespace msg = goshawk_msgs::msg;
+using runtime::Qos;
+using sensor_msgs::msg::PointCloud2;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+enum class MapFault { none, believes_all, not_grown, broken_chain, only_once };
+
+map_server::LiveMap empty_map() {
+  return *map_server::LiveMap::unknown_space({Vec3(0, 0, 0), Vec3(6, 6, 3)}, 0.2,
+                                             {.inflation_m = 0.2});
+}
+
+/// A map server as somebody else might write it, with one fault.
+class ForeignMap {
+ public:
+  ForeignMap(runtime::Node& node, MapFault fault)
+      : node_(node),
+        fault_(fault),
+        map_(empty_map()),
+        reporter_(node, "foreign"),
+        wholes_(node.advertise<msg::VoxelGrid>(
+            "map/voxels", fault == MapFault::only_once ? Qos::reliable_last() : Qos::latched())),
+        updates_(
+            node.advertise<msg::VoxelGridUpdate>("map/voxels/updates", Qos::reliable_last(50))),
+        octomap_(node.advertise<octomap_msgs::msg::Octomap>("octomap_binary", Qos::latched())) {
+    node.subscribe<PointCloud2>("cloud_in", Qos::best_effort(2),
+                                [this](const PointCloud2& m, const auto&) { on_cloud(m); });
+    node.subscribe<nav_msgs::msg::Odometry>("odom", Qos::best_effort(),
+                                            [this](const auto& m, const auto&) {
+                                              const auto state = conversions::from_msg(m);
+                                              if (state) vehicle_map_ = state->position_map;
+                                            });
+    node.every(0.3, [this] {
+      if (changed_) publish_whole();
+    });
+    publish_whole();
+    octomap_msgs::msg::Octomap m;
+    m.header(conversions::make_header(node.now_ns()));
+    m.binary(true);
+    m.id("OcTree");
+    m.resolution(0.2);
+    (void)octomap_.publish(m);
+    reporter_.ready("here");
+  }
+
+ private:
+  Status check(const PointCloud2& m) const {
+    if (fault_ == MapFault::believes_all) return success();
+    if (auto status = conversions::check_frame(m.header(), "map", "a cloud"); !status) {
+      return status;
+    }
+    const bool good = m.fields().size() == 3 && m.fields()[0].name() == "x" &&
+                      m.fields()[2].offset() == 8 && !m.is_bigendian() &&
+                      m.data().size() == std::size_t(m.row_step());
+    return good ? success() : fail(ErrorCode::invalid_input, "this cloud is not understood");
+  }
+
+  void on_cloud(const PointCloud2& m) {
+    if (auto status = check(m); !status) return reporter_.fault(status.error());
+    std::vector<Vec3> points;
+    for (std::size_t at = 0; at + 12 <= m.data().size(); at += 12) {
+      float p[3];
+      std::memcpy(p, m.data().data() + at, sizeof p);
+      points.emplace_back(double(p[0]), double(p[1]), double(p[2]));
+    }
+    const auto result = map_.insert_scan(points, vehicle_map_, 30.0);
+    if (!result) return reporter_.fault(result.error());
+    changed_ = true;
+    if (fault_ == MapFault::not_grown) return publish_whole();
+    msg::VoxelGridUpdate update;
+    conversions::fill_msg(result->update, update);
+    update.header(conversions::make_header(node_.now_ns()));
+    if (fault_ == MapFault::broken_chain) update.from_version(update.from_version() + 5);
+    (void)updates_.publish(update);
+  }
+
+  void publish_whole() {
+    changed_ = false;
+    VoxelGrid grid = map_.grid();
+    if (fault_ == MapFault::not_grown) grid.occupied = map_.raw_occupied();
+    msg::VoxelGrid m;
+    conversions::fill_msg(grid, m);
+    m.header(conversions::make_header(node_.now_ns()));
+    (void)wholes_.publish(m);
+  }
+
+  runtime::Node& node_;
+  MapFault fault_;
+  map_server::LiveMap map_;
+  runtime::StageReporter reporter_;
+  runtime::Publisher<msg::VoxelGrid> wholes_;
+  runtime::Publisher<msg::VoxelGridUpdate> updates_;
+  runtime::Publisher<octomap_msgs::msg::Octomap> octomap_;
+  Vec3 vehicle_map_ = Vec3::Zero();
+  bool changed_ = false;
+};
+
+TEST(ConformMapServer, ForeignOnesPassOrFailAtTheRightItems) {
+  const auto reports = examine_all<ForeignMap, MapFault>(
+      {.stage = "map_server"},
+      {MapFault::none, MapFault::believes_all, MapFault::not_grown, MapFault::broken_chain}, 80);
+  EXPECT_THAT(failed(reports[0]), IsEmpty());
+  EXPECT_GE(reports[0].items.size(), 15U);
+  EXPECT_GT(reports[0].latency_p50_s, 0.0);
+
+  for (const auto& item : reports[1].items) {
+    if (item.name.starts_with("refuses")) {
+      EXPECT_FALSE(item.passed) << item.name;
+    }
+  }
+  EXPECT_THAT(failed(reports[1]), Contains("keeps its map meanwhile"));
+  EXPECT_THAT(failed(reports[2]), Contains("obstacles are grown by what the map says"));
+  EXPECT_THAT(failed(reports[2]), testing::Not(Contains("what is seen is an obstacle")));
+  EXPECT_THAT(failed(reports[3]),
+              ElementsAre("updates follow on one another, and lead to the next whole map"));
+  // Nothing comes however long it is waited for.
+  const auto report =
+      examine<ForeignMap>({.stage = "map_server", .timeout_s = 0.05}, MapFault::only_once, 85);
+  EXPECT_THAT(failed(report), Contains("has a map for who comes"));
+}
+
+}  // namespace
+}  // namespace goshawk::conformance_test
