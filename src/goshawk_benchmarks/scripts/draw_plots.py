@@ -47,7 +47,8 @@ def draw(report, plot, folder):
     elif plot["points_only"] and not named:
         axes.margins(y=0.15)  # a cloud of points: its spread matters, not its distance from zero
     else:
-        axes.set_ylim(bottom=min(0, axes.get_ylim()[0]))
+        low, high = axes.get_ylim()
+        axes.set_ylim(min(0, low), high + 0.03 * (high - min(0, low)))
     axes.set(title=plot["title"], xlabel=plot["x_label"], ylabel=plot["y_label"])
     axes.grid(True, which="both", alpha=0.3)
     if len(series) > 1:

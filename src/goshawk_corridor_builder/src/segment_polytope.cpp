@@ -9,7 +9,7 @@
 namespace goshawk::corridor_builder {
 namespace {
 
-constexpr int kHalvings = 3;          // of the local box, for max_faces
+constexpr int kHalvings = 3;         // of the local box, for max_faces
 constexpr double kWorthwhile = 1.2;  // a further pass must begin with an ellipsoid so much larger
 
 // Up to a factor.
