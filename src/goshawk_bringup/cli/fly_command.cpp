@@ -47,6 +47,8 @@ void FlyOptions::add_to(CLI::App& app) {
 
 namespace {
 
+constexpr double kAcquaintance_s = 0.5;  // discovery among those whom we found takes no longer
+
 volatile sig_atomic_t interrupted = 0;
 
 /// All that a flight needs before anything is started.
@@ -238,6 +240,8 @@ class Flight {
       return fail(ErrorCode::stage_silent, "no odometry came, or nobody listens on goal_pose");
     }
     if (!record_.listen(5.0, recorded_)) progress("the recorder does not hear all stages yet");
+    // Whom we found may not have found each other: the first plan wants its map and the recorder.
+    record_.listen(kAcquaintance_s, [] { return false; });
     progress("all stages ready");
     return success();
   }
