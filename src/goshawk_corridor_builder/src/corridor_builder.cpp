@@ -43,6 +43,17 @@ bool touches_unknown(const VoxelGrid& grid, const Vec3& p) {
   return false;
 }
 
+// A path of no length at all is a vehicle that stays, or turns, where it is. Within a path that
+// leads somewhere, a segment of no length is a fault of whoever made it.
+Status check_lengths(std::span<const Vec3> path) {
+  const auto differs = [&](const Vec3& p) { return p != path.front(); };
+  if (std::ranges::none_of(path, differs)) return success();
+  const auto twice = std::ranges::adjacent_find(path);
+  if (twice == path.end()) return success();
+  return fail(ErrorCode::invalid_input, segment_text(path, int(twice - path.begin())) +
+                                            " has no length: leave one of its points out");
+}
+
 }  // namespace
 
 class CorridorBuilder::Impl {
@@ -162,6 +173,7 @@ Status CorridorBuilder::Impl::check_path(const VoxelGrid& grid, std::span<const 
                 "waypoint " + std::to_string(i) + " of the path, an end of segment " +
                     std::to_string(i == 0 ? 0 : i - 1) + ", is not finite");
   }
+  if (auto status = check_lengths(path); !status) return status;
   const Vec3 upper(grid.geometry.size.x, grid.geometry.size.y, grid.geometry.size.z);
   for (std::size_t i = 0; i < path.size(); ++i) {
     const Vec3 p = grid.geometry.to_grid(path[i]);

@@ -250,6 +250,16 @@ TEST_P(BothGenerators, WrapsAPathOfNoLength) {
   }
 }
 
+TEST_P(BothGenerators, NamesASegmentOfNoLengthWithinAPath) {
+  const VoxelGrid grid = world_with_wall();
+  const Vec3 a(0.5, 1.0, 1.5), b(1.1, 1.1, 1.5);
+  for (const auto& [path, name] : std::vector<std::pair<std::vector<Vec3>, const char*>>{
+           {{a, a, b}, "segment 0"}, {{a, b, b}, "segment 1"}, {{a, b, b, a}, "segment 1"}}) {
+    expect_error(builder_.build(grid, path), ErrorCode::invalid_input, name);
+    expect_error(builder_.build(grid, path), ErrorCode::invalid_input, "no length");
+  }
+}
+
 TEST_P(BothGenerators, StartAndGoalMayLieOnFacesEdgesAndCornersOfObstaclesAndOfTheMap) {
   const VoxelGrid grid = world_with_wall();
   const std::vector<std::vector<Vec3>> paths{

@@ -110,7 +110,7 @@ inline std::vector<Vec3> random_free_path(const VoxelGrid& grid, int segments, d
     const Vec3 step = next - path.back();
     const double length = step.norm();
     if (length > reach_m) next = path.back() + step * (reach_m / length);
-    if (line_is_free(grid, path.back(), next)) path.push_back(next);
+    if (next != path.back() && line_is_free(grid, path.back(), next)) path.push_back(next);
   }
   if (path.size() < 2) path.clear();
   return path;

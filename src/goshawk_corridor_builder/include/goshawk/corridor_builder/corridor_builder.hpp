@@ -46,11 +46,12 @@ class CorridorBuilder {
   ~CorridorBuilder();
 
   /// @param grid obstacles grown by the vehicle already; outside is blocked
-  /// @param waypoints_map [m] n >= 2 points, frame `map`; equal neighbours are allowed
+  /// @param waypoints_map [m] n >= 2 points, frame `map`; all equal, or no neighbours equal
   /// @param raw needed for margin `sphere`, else not looked at
-  /// @return invalid_input (not finite, fewer than two points, a grid that disagrees with itself),
-  ///   segment_blocked (a segment meets an occupied cube's interior or leaves the map; names the
-  ///   segment and the place), corridor_disjoint (two polytopes share no ball)
+  /// @return invalid_input (not finite, fewer than two points, a segment of no length, a grid
+  ///   that disagrees with itself), segment_blocked (a segment meets an occupied cube's interior or
+  ///   leaves the map; names the segment and the place), corridor_disjoint (two polytopes share no
+  ///   ball)
   Result<Corridor> build(const VoxelGrid& grid, std::span<const Vec3> waypoints_map,
                          const RawObstacles* raw = nullptr);
 
