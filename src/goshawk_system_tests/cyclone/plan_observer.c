@@ -77,6 +77,18 @@ static double largest_violation(const Trajectory* t) {
                               t->request.goal.position));
 }
 
+static bool all_found(dds_entity_t writer, const dds_entity_t* readers, int count) {
+  dds_publication_matched_status_t read = {0};
+  dds_get_publication_matched_status(writer, &read);
+  bool found = read.current_count > 0;
+  for (int i = 0; i < count; ++i) {
+    dds_subscription_matched_status_t written = {0};
+    dds_get_subscription_matched_status(readers[i], &written);
+    found = found && written.current_count > 0;
+  }
+  return found;
+}
+
 int main(int argc, char** argv) {
   if (argc != 4) {
     fprintf(stderr, "usage: plan_observer x y z\n");
@@ -98,16 +110,11 @@ int main(int argc, char** argv) {
       dp, goshawk_topic(dp, &goshawk_msgs_msg_BezierTrajectory_desc,
                         "goshawk_msgs::msg::dds_::BezierTrajectory_", "rt/trajectory"), 10, false);
 
-  // Discovery: until the navigator reads goals and the stages write to us.
-  for (int i = 0; i < 500; ++i) {
-    dds_publication_matched_status_t g;
-    dds_subscription_matched_status_t s;
-    dds_get_publication_matched_status(goals, &g);
-    dds_get_subscription_matched_status(trajectories, &s);
-    if (g.current_count > 0 && s.current_count > 0) break;
-    dds_sleepfor(DDS_MSECS(20));
-  }
-  dds_sleepfor(DDS_MSECS(500));
+  // Discovery: until the navigator reads goals and every stage writes to us, and a moment for them
+  // to find us as well.
+  const dds_entity_t answers[] = {paths, corridors, trajectories};
+  for (int i = 0; i < 1500 && !all_found(goals, answers, 3); ++i) dds_sleepfor(DDS_MSECS(20));
+  dds_sleepfor(DDS_SECS(1));
 
   geometry_msgs_msg_PoseStamped goal = {0};
   goal.header.frame_id = "map";
