@@ -1,9 +1,15 @@
 """Results of unittest in the form that CTest and colcon read."""
 
+import re
 import sys
 import time
 import unittest
 import xml.etree.ElementTree as ElementTree
+
+
+def printable(text):
+    """Without the control characters that XML cannot hold."""
+    return re.sub(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd]", "?", text)
 
 
 class Report(unittest.TextTestResult):
@@ -25,6 +31,7 @@ class Report(unittest.TextTestResult):
         case = ElementTree.SubElement(self.suite, "testcase", classname=group, name=name,
                                       time=f"{seconds:.3f}")
         if tag:
+            text = printable(text)
             ElementTree.SubElement(case, tag, message=text.strip().split("\n")[-1]).text = text
 
     def addSuccess(self, test):
