@@ -102,14 +102,6 @@ class SummaryTest(unittest.TestCase):
         (folder / "tools.xml").write_text("<testsuite><testca")
         self.expect("0 passed, 1 failed", False)
 
-    def test_shows_what_failed_first_though_it_passed_again(self):
-        self.package("a", [ctest("flight", "passed")], {
-            "flight": "<testsuite failed_first='it fell'><testcase classname='A' name='b'/>"
-                      "</testsuite>"})
-        output = self.expect("1 passed, 0 failed", True)
-        self.assertIn("AGAIN    a/flight: run twice", output)
-        self.assertIn("    it fell", output)
-
     def test_fails_if_no_test_ran(self):
         self.assertIn("no test ran", self.expect("0 passed, 0 failed", False))
         self.build = self.build / "absent"

@@ -18,7 +18,7 @@ import unittest
 import uuid
 import xml.etree.ElementTree as ElementTree
 
-from reporting import Report, printable
+from reporting import Report
 
 SOURCE = pathlib.Path(os.environ.get("GOSHAWK_SOURCE") or
                       pathlib.Path(__file__).resolve().parents[3])
@@ -266,25 +266,14 @@ def note(text):
     print(f"    {text}", file=sys.stderr, flush=True)
 
 
-def run_tests():
+def main():
+    if not os.access(GOSHAWK, os.X_OK):
+        sys.exit(f"{GOSHAWK} is not there: build first, or set GOSHAWK_PREFIX")
     loader, module = unittest.defaultTestLoader, sys.modules["__main__"]
     names = sys.argv[1:]
     tests = (loader.loadTestsFromNames(names, module) if names else
              loader.loadTestsFromModule(module))
-    return unittest.TextTestRunner(resultclass=Report, verbosity=2).run(tests)
-
-
-def main():
-    if not os.access(GOSHAWK, os.X_OK):
-        sys.exit(f"{GOSHAWK} is not there: build first, or set GOSHAWK_PREFIX")
-    result = run_tests()
-    if not result.wasSuccessful():
-        # Ten processes in real time on whatever else the machine does: once more, and openly.
-        # tools/test-summary shows what failed first also where all pass now.
-        first = "\n".join(text for _, text in result.failures + result.errors)
-        note("failed: once more")
-        result = run_tests()
-        result.suite.set("failed_first", printable(first))
+    result = unittest.TextTestRunner(resultclass=Report, verbosity=2).run(tests)
     report = os.environ.get("GOSHAWK_REPORT")
     if report:
         pathlib.Path(report).parent.mkdir(parents=True, exist_ok=True)
