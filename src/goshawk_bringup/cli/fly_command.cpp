@@ -6,7 +6,6 @@
 #include <ctime>
 #include <filesystem>
 #include <functional>
-#include <set>
 
 #include "flight_folder.hpp"
 #include "fly_options.hpp"
@@ -15,6 +14,7 @@
 #include "launch_process.hpp"
 #include "plan_json.hpp"
 #include "random_tour.hpp"
+#include "recorder_process.hpp"
 #include "verbs.hpp"
 
 namespace goshawk::cli {
@@ -322,33 +322,6 @@ Status check_domain_is_free(runtime::Context& context, runtime::Node& node, int 
   return success();
 }
 
-// A process of its own: a slow disk must not be felt in flight.
-Result<std::optional<LaunchProcess>> start_recorder(const FlyOptions& options, const Preparation& p,
-                                                    int domain) {
-  if (options.no_record) return std::optional<LaunchProcess>();
-  auto recorder = LaunchProcess::start_verb(
-      {"record", "--stop-with-parent", "--overwrite", "-o", p.folder + "/flight.mcap"}, domain,
-      p.folder + "/logs/record.log");
-  if (!recorder) return recorder.error();
-  return std::optional<LaunchProcess>(*std::move(recorder));
-}
-
-// The recorder joins a topic once it has found who writes it: before that, messages are lost to it.
-bool hears_planning(const runtime::Context& context, pid_t recorder) {
-  std::string prefix;
-  for (const auto& participant : context.participants()) {
-    if (participant.name == "goshawk_" + std::to_string(recorder)) prefix = participant.guid_prefix;
-  }
-  std::set<std::string> heard;
-  for (const auto& endpoint : context.endpoints()) {
-    if (!endpoint.writer && endpoint.participant == prefix) heard.insert(endpoint.topic);
-  }
-  static constexpr const char* kTopics[] = {"plan_request", "path", "corridor", "trajectory"};
-  return std::ranges::all_of(kTopics, [&](const std::string& topic) {
-    return std::ranges::any_of(heard, [&](const auto& h) { return h.ends_with("/" + topic); });
-  });
-}
-
 Result<Json> fly(const FlyOptions& options, const Preparation& p) {
   const auto domain = private_domain();
   if (!domain) return domain.error();
@@ -358,15 +331,19 @@ Result<Json> fly(const FlyOptions& options, const Preparation& p) {
   if (!context) return context.error();
   runtime::Node node(**context, "goshawk_fly");
   if (auto free = check_domain_is_free(**context, node, *domain); !free) return free.error();
-  auto recorder = start_recorder(options, p, *domain);
-  if (!recorder) return recorder.error();
+  std::optional<LaunchProcess> recorder;
+  if (!options.no_record) {
+    auto started = start_recorder(p.folder, *domain);
+    if (!started) return started.error();
+    recorder.emplace(*std::move(started));
+  }
   auto launch =
       LaunchProcess::start(launch_arguments(options, p), *domain, p.folder + "/logs/launch.log");
   if (!launch) return launch.error();
   Flight flight(options, p, node, *std::move(launch),
-                [&] { return !*recorder || hears_planning(**context, (*recorder)->pid()); });
+                [&] { return !recorder || hears_planning(**context, recorder->pid()); });
   const FlightOutcome outcome = flight.fly();
-  if (*recorder) (*recorder)->stop();
+  if (recorder) recorder->stop();
   const Json summary = summary_json(outcome, flight.record(), p.folder);
   if (auto written = write_flight(p.folder, summary, flight.record(), p.map, p.config.map.radius_m);
       !written) {
