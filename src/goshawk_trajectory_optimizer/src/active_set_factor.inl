@@ -1,6 +1,12 @@
 // The Hessian of the jerk for one axis, block-tridiagonal with 3 x 3 blocks and the same for all
 // three. Included by active_set_kernels.inl.
 
+GOSHAWK_INLINE Lanes point_at(const Lanes* x, int joint, const double* map) {
+  const Lanes* v = x + 3 * joint;
+  return map[0] * v[0] + map[1] * v[1] + map[2] * v[2] + map[3] * v[3] + map[4] * v[4] +
+         map[5] * v[5];
+}
+
 // to = inverse of a symmetric positive definite matrix. @return false where it is not
 GOSHAWK_INLINE bool invert(const double* a, double* to) {
   const double d0 = a[0];

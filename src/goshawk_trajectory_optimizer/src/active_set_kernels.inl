@@ -118,6 +118,36 @@ void project(ActiveSetState& s) {
   if (s.slope < kCancelled * s.own) measure_remainder(s);
 }
 
+// A limit that is a ball and is active already: its point y has slid along the half-spaces that
+// touch it. The pull F = sum multiplier * normal is to have the direction of y. As F turns by an
+// angle, y turns by compliance |F| times as much the other way: Newton's step for the direction.
+void turn(ActiveSetState& s) {
+  if (s.next.limit < 0) return;
+  Lanes pull = {};
+  for (int i = 0; i < s.count; ++i) {
+    const HalfSpace& a = s.active[i];
+    if (a.limit == s.next.limit) pull += a.multiplier * a.normal;
+  }
+  const double force = __builtin_sqrt(sum(pull * pull));
+  if (!(force > 0.0)) return;
+  const Lanes from = pull / all(force), to = s.next.normal;
+  const Lanes across = to - sum(to * from) * from;
+  const double angle = __builtin_sqrt(sum(across * across));
+  if (!(angle > 1e-9)) return;
+  s.next.normal = across / all(angle);
+  reach(s);
+  project(s);
+  const double share = 1.0 / (1.0 + force * larger(0.0, s.slope));
+  Lanes normal = from + share * (to - from);
+  normal = normal / all(__builtin_sqrt(sum(normal * normal)));
+  const Lanes y = point_at(s.x, s.next.joint, s.next.map);
+  const double violation = sum(normal * y) - 1.0;
+  s.next.normal = to;
+  if (!(violation > 0.1 * s.violation)) return;
+  s.next.normal = normal;
+  s.violation = violation;
+}
+
 // (A H^-1 A')^-1 of one more constraint, by the inverse of a bordered matrix.
 void append(ActiveSetState& s) {
   const int k = s.count;

@@ -32,12 +32,6 @@ GOSHAWK_INLINE Lanes root(Lanes q) {
                __builtin_sqrt(q[3])};
 }
 
-GOSHAWK_INLINE Lanes point_at(const Lanes* x, int joint, const double* map) {
-  const Lanes* v = x + 3 * joint;
-  return map[0] * v[0] + map[1] * v[1] + map[2] * v[2] + map[3] * v[3] + map[4] * v[4] +
-         map[5] * v[5];
-}
-
 Worst price_faces(ActiveSetState& s) {
   Worst worst;
   const Lanes tolerance = all(s.face_tolerance);
@@ -102,6 +96,7 @@ void take_face(ActiveSetState& s, long long index, int lane) {
   HalfSpace& to = s.next;
   to.normal = Lanes{f.nx[lane], f.ny[lane], f.nz[lane], 0.0};
   to.bound = f.offset[lane];
+  to.limit = -1;
   to.joint = point->joint;
   for (int b = 0; b < 3; ++b) {
     to.map[b] = point->map[b];
@@ -125,6 +120,7 @@ void take_limit(ActiveSetState& s, long long index, int lane) {
   const Lanes direction = {w[0] * y[0], w[1] * y[1], w[2] * y[2], 0.0};
   to.normal = direction / all(__builtin_sqrt(sum(direction * y)));
   to.bound = 1.0;
+  to.limit = 4 * index + lane;
 }
 
 void price(ActiveSetState& s) {

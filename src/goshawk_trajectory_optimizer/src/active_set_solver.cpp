@@ -10,6 +10,7 @@ namespace {
 
 constexpr int kStepsAPiece = 60;
 constexpr double kDependent = 1e-13;  // slope of a violation, relative: rounding
+constexpr double kRounding = 1e-4;    // of the dual residual: pieces of very uneven durations
 constexpr int kMostRefinements = 5;
 
 enum class Step { added, infeasible, dependent, full };
@@ -103,6 +104,7 @@ void ActiveSetSolver::iterate(const Settings& settings, Outcome& out) {
     kernels.place(s);
     kernels.price(s);
     if (s.violation == 0.0) break;
+    kernels.turn(s);
     if (settings.stop != nullptr && *settings.stop && (*settings.stop)()) {
       out.status = Status::stopped;
       return;
@@ -122,7 +124,8 @@ void ActiveSetSolver::iterate(const Settings& settings, Outcome& out) {
   out.gap = s.gap;
   out.dual_residual = s.dual_residual;
   out.primal_residual = std::max({0.0, s.face_violation, s.limit_violation});
-  if (s.dual_residual <= settings.dual_feasibility) out.status = Status::solved;
+  if (s.dual_residual <= std::max(kRounding, settings.dual_feasibility))
+    out.status = Status::solved;
 }
 
 }  // namespace goshawk::trajectory_optimizer

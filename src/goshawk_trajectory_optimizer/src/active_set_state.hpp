@@ -14,6 +14,7 @@ struct HalfSpace {
   int joint;
   double bound;
   double multiplier;
+  long long limit;  // which one it touches; -1: a face
 };
 
 struct FourFaces {
@@ -89,6 +90,7 @@ struct ActiveSetKernels {
   void (*price)(ActiveSetState&);    // the most violated constraint
   void (*reach)(ActiveSetState&);    // own and column of the next constraint
   void (*project)(ActiveSetState&);  // image, change, slope
+  void (*turn)(ActiveSetState&);     // the next constraint, where its limit is active already
   void (*append)(ActiveSetState&);
   void (*drop)(ActiveSetState&, int index);
   void (*refine)(ActiveSetState&);   // multipliers, from what the active constraints miss
