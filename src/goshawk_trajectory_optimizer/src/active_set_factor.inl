@@ -143,31 +143,3 @@ void weigh(ActiveSetState& s) {
     }
   }
 }
-
-// Objective, gradient of the Lagrangian and complementarity, from nothing but x and multipliers.
-void measure(ActiveSetState& s) {
-  Lanes size = all(1.0), residual = {}, cost = {};
-  for (int i = 0; i < 3 * (s.last + 1); ++i) s.work[i] = Lanes{};
-  for (int k = 0; k < s.last; ++k) {
-    const double* q = s.jerk + 36 * k;
-    const Lanes* x = s.x + 3 * k;
-    for (int b = 0; b < 6; ++b) {
-      Lanes g = {};
-      for (int c = 0; c < 6; ++c) g += q[6 * b + c] * x[c];
-      cost += g * x[b];
-      s.work[3 * k + b] += g;
-    }
-  }
-  s.objective = 0.5 * sum(cost);
-  for (int i = 3; i < 3 * s.last; ++i) size = larger(size, magnitude(s.work[i]));
-  s.gap = 0.0;
-  for (int i = 0; i < s.count; ++i) {
-    const HalfSpace& a = s.active[i];
-    Lanes* v = s.work + 3 * a.joint;
-    for (int b = 0; b < 6; ++b) v[b] += a.map[b] * (a.multiplier * a.normal);
-    const double slack = a.bound - sum(a.normal * point_at(s.x, a.joint, a.map));
-    s.gap += a.multiplier * larger(slack, -slack);
-  }
-  for (int i = 3; i < 3 * s.last; ++i) residual = larger(residual, magnitude(s.work[i]));
-  s.dual_residual = largest(residual) / largest(size);
-}

@@ -40,11 +40,16 @@ GOSHAWK_INLINE void hold_ends(ActiveSetState& s) {
   for (int b = 0; b < 3; ++b) s.work[b] = s.work[3 * s.last + b] = Lanes{};
 }
 
-void place(ActiveSetState& s) {
+// work = H^-1 A' multipliers: how far the constraints hold x back
+void pull_back(ActiveSetState& s) {
   clear_work(s);
   for (int i = 0; i < s.count; ++i) scatter(s, s.active[i], s.active[i].multiplier);
   hold_ends(s);
   solve(s, 1);
+}
+
+void place(ActiveSetState& s) {
+  pull_back(s);
   for (int i = 0; i < 3 * (s.last + 1); ++i) s.x[i] = s.free[i] - s.work[i];
 }
 
@@ -199,6 +204,69 @@ void refine(ActiveSetState& s) {
   multiply(s, s.column, s.image);
   multiply_transposed(s, s.image, s.change);
   for (int i = 0; i < s.count; ++i) {
-    s.active[i].multiplier = larger(0.0, s.active[i].multiplier + s.change[i]);
+    const double before = s.active[i].multiplier;
+    s.active[i].multiplier = larger(0.0, before + s.change[i]);
+    s.change[i] = s.active[i].multiplier - before;
   }
+}
+
+// residual = gradient of the cost. @return its largest component, at least 1
+GOSHAWK_INLINE double differentiate_cost(ActiveSetState& s) {
+  Lanes size = all(1.0), cost = {};
+  for (int i = 0; i < 3 * (s.last + 1); ++i) s.residual[i] = Lanes{};
+  for (int k = 0; k < s.last; ++k) {
+    const double* q = s.jerk + 36 * k;
+    const Lanes* x = s.x + 3 * k;
+    for (int b = 0; b < 6; ++b) {
+      Lanes g = {};
+      for (int c = 0; c < 6; ++c) g += q[6 * b + c] * x[c];
+      cost += g * x[b];
+      s.residual[3 * k + b] += g;
+    }
+  }
+  s.objective = 0.5 * sum(cost);
+  for (int i = 3; i < 3 * s.last; ++i) size = larger(size, magnitude(s.residual[i]));
+  return largest(size);
+}
+
+// From nothing but x and the multipliers. The Lagrangian's least value is r' H^-1 r / 2 below what
+// it is at x, where its gradient is r: with what the slacks add, that is the duality gap.
+// Leaves H^-1 r in work.
+void measure(ActiveSetState& s) {
+  const double size = differentiate_cost(s);
+  s.gap = 0.0;
+  for (int i = 0; i < s.count; ++i) {
+    const HalfSpace& a = s.active[i];
+    Lanes* v = s.residual + 3 * a.joint;
+    for (int b = 0; b < 6; ++b) v[b] += a.map[b] * (a.multiplier * a.normal);
+    const double slack = a.bound - sum(a.normal * point_at(s.x, a.joint, a.map));
+    s.gap += a.multiplier * larger(slack, -slack);
+  }
+  Lanes residual = {}, product = {};
+  clear_work(s);
+  for (int i = 3; i < 3 * s.last; ++i) {
+    residual = larger(residual, magnitude(s.residual[i]));
+    s.work[i] = s.residual[i];
+  }
+  solve(s, 1);
+  for (int i = 3; i < 3 * s.last; ++i) product += s.work[i] * s.residual[i];
+  s.dual_residual = largest(residual) / size;
+  s.gap += 0.5 * larger(0.0, sum(product));
+}
+
+// A step of iterative refinement for x and the multipliers together, after measure(): what rounding
+// has left where durations are very uneven. The free minimum takes over what x gained.
+void polish(ActiveSetState& s) {
+  const auto step = [&] {
+    for (int i = 3; i < 3 * s.last; ++i) s.x[i] -= s.work[i];
+  };
+  step();
+  refine(s);
+  clear_work(s);
+  for (int i = 0; i < s.count; ++i) scatter(s, s.active[i], s.change[i]);
+  hold_ends(s);
+  solve(s, 1);
+  step();
+  pull_back(s);
+  for (int i = 3; i < 3 * s.last; ++i) s.free[i] = s.x[i] + s.work[i];
 }

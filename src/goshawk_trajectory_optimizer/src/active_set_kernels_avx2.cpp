@@ -8,8 +8,8 @@ namespace {
 
 const ActiveSetKernels& active_set_kernels_avx2();
 const ActiveSetKernels& active_set_kernels_avx2() {
-  static constexpr ActiveSetKernels kAvx2{factor, weigh,  place, price,  reach,  project,
-                                          turn,   append, drop,  refine, measure};
+  static constexpr ActiveSetKernels kAvx2{factor, weigh,  place, price,  reach,   project,
+                                          turn,   append, drop,  refine, measure, polish};
   return kAvx2;
 }
 

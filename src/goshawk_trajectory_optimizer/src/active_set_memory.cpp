@@ -49,7 +49,7 @@ void ActiveSetSolver::Memory::load(const SplineProblem& problem) {
 
 void ActiveSetSolver::Memory::load_joints(const SplineProblem& problem) {
   const std::size_t n = std::size_t(state.last) + 1;
-  for (auto* v : {&x_, &free_, &work_}) v->assign(3 * n, Four{});
+  for (auto* v : {&x_, &free_, &work_, &residual_}) v->assign(3 * n, Four{});
   factors_.resize(n);
   jerk_.resize(n);
   for (std::size_t k = 0; k < n; ++k) {
@@ -64,6 +64,7 @@ void ActiveSetSolver::Memory::load_joints(const SplineProblem& problem) {
   state.x = &x_[0].v;
   state.free = &free_[0].v;
   state.work = &work_[0].v;
+  state.residual = &residual_[0].v;
   state.jerk = jerk_[0].q;
   state.factors = factors_.data();
 }

@@ -32,7 +32,7 @@ struct ActiveSetSolver::Memory {
   struct Jerk {
     double q[36];
   };
-  std::vector<Four> x_, free_, work_, root_, column_, image_, change_;
+  std::vector<Four> x_, free_, work_, residual_, root_, column_, image_, change_;
   std::vector<Jerk> jerk_;
   std::vector<JointFactor> factors_;
   std::vector<PricedPoint> points_;

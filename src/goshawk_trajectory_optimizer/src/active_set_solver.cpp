@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kStepsAPiece = 60;
 constexpr double kDependent = 1e-13;  // slope of a violation, relative: rounding
-constexpr double kRounding = 1e-4;    // of the dual residual: pieces of very uneven durations
+constexpr int kMostPolishes = 5;
 constexpr int kMostRefinements = 5;
 
 enum class Step { added, infeasible, dependent, full };
@@ -100,15 +100,24 @@ void ActiveSetSolver::iterate(const Settings& settings, Outcome& out) {
   kernels.weigh(s);
   kernels.place(s);
   kernels.measure(s);
-  for (int refinements = 0;;) {
-    kernels.place(s);
+  bool placed = false;
+  for (int refinements = 0, polishes = 0;;) {
+    if (!placed) kernels.place(s);
+    placed = false;
     kernels.price(s);
-    if (s.violation == 0.0) break;
-    kernels.turn(s);
+    if (s.violation == 0.0) {
+      kernels.measure(s);
+      if (s.dual_residual <= settings.dual_feasibility || polishes == kMostPolishes) break;
+      kernels.polish(s);
+      placed = true;
+      ++polishes;
+      continue;
+    }
     if (settings.stop != nullptr && *settings.stop && (*settings.stop)()) {
       out.status = Status::stopped;
       return;
     }
+    kernels.turn(s);
     const Step step = make_active(s, memory_->most_objective, most_steps, out.iterations);
     if (step == Step::infeasible) out.status = Status::infeasible;
     if (step == Step::full) out.status = Status::iteration_limit;
@@ -119,13 +128,11 @@ void ActiveSetSolver::iterate(const Settings& settings, Outcome& out) {
       kernels.refine(s);
     }
   }
-  kernels.measure(s);
   out.objective = s.objective;
   out.gap = s.gap;
   out.dual_residual = s.dual_residual;
   out.primal_residual = std::max({0.0, s.face_violation, s.limit_violation});
-  if (s.dual_residual <= std::max(kRounding, settings.dual_feasibility))
-    out.status = Status::solved;
+  if (s.gap <= settings.gap * std::abs(s.objective) + 1e-14) out.status = Status::solved;
 }
 
 }  // namespace goshawk::trajectory_optimizer

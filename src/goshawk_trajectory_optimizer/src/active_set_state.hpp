@@ -56,9 +56,10 @@ struct ActiveSetState {
   int last = 0;                  // index of the last joint = number of pieces
   const double* jerk = nullptr;  // 36 a piece
   JointFactor* factors = nullptr;
-  Lanes* x = nullptr;     // 3 a joint: p, v, a; the ends are constant
-  Lanes* free = nullptr;  // the same without constraints
-  Lanes* work = nullptr;  // likewise; zero at the ends
+  Lanes* x = nullptr;         // 3 a joint: p, v, a; the ends are constant
+  Lanes* free = nullptr;      // the same without constraints
+  Lanes* work = nullptr;      // likewise; zero at the ends
+  Lanes* residual = nullptr;  // gradient of the Lagrangian
   PricedPoint* points = nullptr;
   int point_count = 0;
   FourFaces* faces = nullptr;
@@ -95,6 +96,7 @@ struct ActiveSetKernels {
   void (*drop)(ActiveSetState&, int index);
   void (*refine)(ActiveSetState&);   // multipliers, from what the active constraints miss
   void (*measure)(ActiveSetState&);  // objective, dual residual, gap
+  void (*polish)(ActiveSetState&);   // x, after measure
 };
 
 /// For this processor: the same bits from each.

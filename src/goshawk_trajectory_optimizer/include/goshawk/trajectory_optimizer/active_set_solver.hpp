@@ -19,7 +19,7 @@ namespace goshawk::trajectory_optimizer {
 /// answer depends on an earlier one.
 class ActiveSetSolver {
  public:
-  using Settings = SplineSolver::Settings;  // of which gap and max_iterations play no part
+  using Settings = SplineSolver::Settings;  // of which max_iterations plays no part
   using Status = SplineSolver::Status;
   using Outcome = SplineSolver::Outcome;  // an iteration: a constraint more or less
 
