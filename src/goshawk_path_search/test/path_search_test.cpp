@@ -136,7 +136,7 @@ TEST(Config, OffersOnlyWordsThatItTakes) {
   Config config;
   int words_seen = 0;
   describe(config, [&](const char*, auto& value, const char*, const char*, const auto& domain) {
-    if constexpr (std::is_same_v<std::decay_t<decltype(domain)>, OneOf>) {
+    if constexpr (std::is_convertible_v<decltype(domain), const OneOf&>) {
       EXPECT_EQ(std::count(domain.choices.begin(), domain.choices.end(), value), 1);
       for (const std::string& word : domain.choices) {
         const std::string before = std::exchange(value, word);

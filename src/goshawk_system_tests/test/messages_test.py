@@ -272,7 +272,8 @@ class Tools(StackTest):
             self.assertEqual(answer["component"], stage)
             for parameter in answer["parameters"]:
                 self.assertEqual(set(parameter),
-                                 {"name", "type", "unit", "default", "range", "text"})
+                                 {"name", "type", "unit", "default", "range", "text",
+                                  "at_run_time"})
             self.assertTrue(answer["parameters"])
 
     def test_doctor_finds_nothing_wrong_with_a_flight(self):
