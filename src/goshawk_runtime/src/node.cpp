@@ -6,6 +6,7 @@
 #include <fastrtps/types/TypesBase.h>
 #include <bit>
 #include <cmath>
+#include <cstdlib>
 #include <fastdds/dds/publisher/DataWriter.hpp>
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
 
@@ -224,18 +225,28 @@ std::unique_ptr<Subscription> Node::Impl::open(const Node& node, const std::stri
                                                Node::RawCallback callback) {
   auto* dds_topic = context.topic(name, type.impl().support);
   dds::DataReaderQos reader_qos;
+  bool own_port = false;
   if (context.subscriber->get_datareader_qos_from_profile(name, reader_qos) !=
       ReturnCode_t::RETCODE_OK) {
     reader_qos = dds::DATAREADER_QOS_DEFAULT;
     apply(qos, reader_qos);
     // A process has one receiving thread for all else, and a setpoint must not wait there behind
     // the hundreds of datagrams of a map. By turns all comes in order through one socket instead.
-    if (may_be_megabytes(type.name()) && !time.takes_turns) {
-      reader_qos.properties().properties().emplace_back("fastdds.unique_network_flows", "true");
-    }
+    own_port = may_be_megabytes(type.name()) && !time.takes_turns &&
+               std::getenv("FASTRTPS_DEFAULT_PROFILES_FILE") == nullptr;
   }
-  auto* reader =
-      dds_topic == nullptr ? nullptr : context.subscriber->create_datareader(dds_topic, reader_qos);
+  const auto create = [&] {
+    return dds_topic == nullptr ? nullptr
+                                : context.subscriber->create_datareader(dds_topic, reader_qos);
+  };
+  dds::DataReader* reader = nullptr;
+  if (own_port) {
+    auto& properties = reader_qos.properties().properties();
+    properties.emplace_back("fastdds.unique_network_flows", "true");
+    reader = create();
+    if (reader == nullptr) properties.pop_back();  // all of its ports are taken
+  }
+  if (reader == nullptr) reader = create();
   if (reader == nullptr) {
     throw StartupFault(fail(ErrorCode::io_failed,
                             node.name_ + " cannot read " + name + " as " + type.name() +
