@@ -1,6 +1,7 @@
 #include <signal.h>
 #include <sys/prctl.h>
 
+#include <chrono>
 #include <cstdio>
 #include <ctime>
 
@@ -20,8 +21,25 @@ struct RecordCall {
   std::string file;
   bool overwrite = false;
   double duration_s = 0.0;  // 0: until Ctrl-C
+  bool lock_step = false;
   bool stop_with_parent = false;
   bool json = false;
+};
+
+/// The machine's time, also where messages have simulated time.
+class Stopwatch {
+ public:
+  double seconds() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
+  /// @return whether period_s is over; it begins anew then
+  bool lap(double period_s) {
+    if (seconds() < period_s) return false;
+    begin_ = Clock::now();
+    return true;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point begin_ = Clock::now();
 };
 
 std::string dated_name() {
@@ -38,6 +56,9 @@ void add_options(CLI::App& app, RecordCall& o) {
   app.add_flag("--overwrite", o.overwrite, "replace the file where it exists");
   app.add_option("-d,--duration", o.duration_s, "[s] end by itself after this time")
       ->check(CLI::Range(0.0, 1e9));
+  app.add_flag("--lock-step", o.lock_step,
+               "take turns as node goshawk_record: name it last in the plant's lock_step_nodes, and "
+               "no message is lost; times are simulated");
   app.add_flag("--stop-with-parent", o.stop_with_parent,
                "end as on Ctrl-C when the process that started this one ends");
   app.add_flag("--json", o.json, "print one JSON object at the end (docs/cli.md)");
@@ -98,19 +119,21 @@ int record(const RecordCall& o) {
   auto context = join_domain();
   if (!context) return report_failure("record", context.error(), o.json, kNotDone);
   runtime::Node node(**context, "goshawk_record");
+  if (o.lock_step) node.run_in_lock_step();
   Recorder recorder(**context, node, *std::move(writer), {o.topics, o.exclude});
   say("record", "recording to " + o.file + (o.duration_s > 0.0 ? "" : ", until Ctrl-C"));
-  node.every(kLookPeriod_s, [&] { recorder.join(); });
-  node.every(kFlushPeriod_s, [&] { (void)recorder.flush(); });
-  const auto begin = node.now_ns();
-  const auto seconds = [&] { return double(node.now_ns() - begin) * 1e-9; };
+  const Stopwatch whole;
+  Stopwatch looked, flushed;
+  recorder.join();
   while (recorder.state() && !Interruptible::interrupted() &&
-         (o.duration_s <= 0.0 || seconds() < o.duration_s)) {
+         (o.duration_s <= 0.0 || whole.seconds() < o.duration_s)) {
     node.spin_some(kLookPeriod_s);
+    if (looked.lap(kLookPeriod_s)) recorder.join();
+    if (flushed.lap(kFlushPeriod_s)) (void)recorder.flush();
   }
   for (int k = 0; k < 4 && recorder.state(); ++k) node.spin_some(0.0);  // what has come already
   const auto closed = recorder.close();
-  print_end(recorder, o, seconds());
+  print_end(recorder, o, whole.seconds());
   return closed ? kDone : kNotDone;
 }
 
