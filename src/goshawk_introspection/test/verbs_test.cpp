@@ -47,21 +47,27 @@ double seconds_since(Steady::time_point begin) {
 /// A child whose output is collected; ends it after `most_s`, so that no test hangs.
 class Child {
  public:
-  explicit Child(std::vector<std::string> arguments, int in_domain = domain()) {
+  explicit Child(std::vector<std::string> arguments, int in_domain = domain(),
+                 const std::string& input = "") {
     setenv("ROS_DOMAIN_ID", std::to_string(in_domain).c_str(), 1);
     arguments.insert(arguments.begin(), INTROSPECTION_CLI);
     std::vector<char*> argv;
     for (auto& argument : arguments) argv.push_back(argument.data());
     argv.push_back(nullptr);
-    int out[2], err[2];
+    int in[2], out[2], err[2];
+    EXPECT_EQ(pipe2(in, O_CLOEXEC), 0);
+    EXPECT_EQ(write(in[1], input.data(), input.size()), ssize_t(input.size()));  // a pipe holds it
+    close(in[1]);
     EXPECT_EQ(pipe2(out, O_CLOEXEC), 0);
     EXPECT_EQ(pipe2(err, O_CLOEXEC), 0);
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_adddup2(&actions, in[0], 0);
     posix_spawn_file_actions_adddup2(&actions, out[1], 1);
     posix_spawn_file_actions_adddup2(&actions, err[1], 2);
     EXPECT_EQ(posix_spawn(&pid_, INTROSPECTION_CLI, &actions, nullptr, argv.data(), environ), 0);
     posix_spawn_file_actions_destroy(&actions);
+    close(in[0]);
     close(out[1]);
     close(err[1]);
     out_ = out[0];
@@ -249,6 +255,22 @@ TEST_F(Verbs, PublishesJsonAndYaml) {
   EXPECT_EQ(thrice.status, 0) << thrice.err;
   EXPECT_EQ(goals(), (std::vector<std::string>{"a", "b", "b", "b"}));
   EXPECT_EQ(Json::parse(thrice.out)["published"], 3);
+}
+
+TEST_F(Verbs, PublishesAMessageALineFromStandardInput) {
+  Child child({"topic", "pub", "/uav1/goal", "std_msgs/String", "-", "--json"}, domain(),
+              "{\"data\": \"a\"}\n\ndata: b\n{data: 'the last line needs no end'}");
+  const auto all = child.finish();
+  EXPECT_EQ(all.status, 0) << all.err;
+  EXPECT_EQ(goals(), (std::vector<std::string>{"a", "b", "the last line needs no end"}));
+  EXPECT_EQ(std::ranges::count(all.out, '\n'), 3);
+  EXPECT_EQ(Json::parse(all.out.substr(all.out.find('\n', all.out.find('\n') + 1)))["published"], 3);
+  Child wrong({"topic", "pub", "/uav1/goal", "std_msgs/String", "-"}, domain(),
+              "{data: c}\n{dat: d}\n{data: e}\n");
+  const auto refused = wrong.finish();
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err, HasSubstr("did you mean data?"));
+  EXPECT_EQ(goals().size(), 4u) << "those before the wrong one, and none behind it";
 }
 
 TEST_F(Verbs, ListsNodes) {

@@ -5,13 +5,23 @@ import re
 import shlex
 
 import harness
-from harness import SOURCE, SystemTest, note
+from harness import SOURCE, SystemTest, note, until
 from stack import Stack
 
 PAGES = [SOURCE / "README.md", *sorted((SOURCE / "docs").glob("*.md"))]
-# What runs until it is stopped: it must live this long.
-ENDLESS = re.compile(r"goshawk (launch|run|view(?!.*--check)|topic (echo|hz|delay|bw))\b")
-LIVES_S = 3.0
+# What runs until it is stopped, and how it says that it does its work.
+ENDLESS = [(re.compile(r"goshawk launch\b"), lambda text: starts_all(text)),
+           (re.compile(r"goshawk run\b"), lambda text: "ready: " in text),
+           (re.compile(r"goshawk view\b(?!.*--check)"), lambda text: "open http://" in text),
+           (re.compile(r"goshawk topic (echo|hz|delay|bw)\b(?!.*--once)"),
+            lambda text: text.count("\n") > 0)]
+
+
+def starts_all(text):
+    """Each of the stages that a launch names runs."""
+    named = re.search(r"\[launch\] starting (.*?);", text)
+    return named is not None and all(f"[launch] {stage}: running\n" in text
+                                     for stage in named.group(1).split(", "))
 
 
 def command_lines(path):
@@ -87,18 +97,18 @@ class Commands(SystemTest):
         name = " ".join(line.split()).replace("tools/fly", "goshawk fly")
         return name, self.sandbox.start(*words, env=self.environment(name, exports))
 
-    def check_endless(self, name, process):
-        """It lives until it is stopped; a topic's reader may also end where nobody writes."""
-        status = process.wait(LIVES_S)
-        if status is None:
-            status, _ = process.stop()
-        elif "topic" not in name:
-            self.fail(f"ended by itself: {process.outcome()}")
-        self.assertIn(status, (0, 1), str(process.outcome()))
+    def check_endless(self, process, works):
+        """It says that it does its work, and ends well when it is stopped."""
+        until(lambda: works(process.out() + process.err()) or not process.alive(), 60.0)
+        self.assertTrue(process.alive(), f"ended by itself: {process.outcome()}")
+        self.assertTrue(works(process.out() + process.err()), str(process.outcome()))
+        status, _ = process.stop()
+        self.assertEqual(status, 0, str(process.outcome()))
 
     def check_line(self, name, process):
-        if ENDLESS.search(name):
-            return self.check_endless(name, process)
+        for pattern, works in ENDLESS:
+            if pattern.search(name):
+                return self.check_endless(process, works)
         if process.wait(120.0) is None:
             self.fail(f"does not end: {process.outcome()}")
         outcome = process.outcome()
@@ -121,9 +131,12 @@ class Commands(SystemTest):
             for line, process in started:
                 with self.subTest(page=lines[line][0], line=line):
                     self.check_line(*process)
+                    note(f"{process[1].outcome().seconds:6.1f} s  {line}")
         for line in others:  # some look at what a flight left
             with self.subTest(page=lines[line][0], line=line):
-                self.check_line(*self.start_line(line, lines[line][1]))
+                started = self.start_line(line, lines[line][1])
+                self.check_line(*started)
+                note(f"{started[1].outcome().seconds:6.1f} s  {line}")
 
 
 if __name__ == "__main__":
