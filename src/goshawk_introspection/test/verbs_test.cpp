@@ -158,6 +158,22 @@ TEST_F(Verbs, PublishesJsonAndYaml) {
   EXPECT_EQ(Json::parse(thrice.out)["published"], 3);
 }
 
+TEST_F(Verbs, PublishesAMessageALineFromStandardInput) {
+  Child child({"topic", "pub", "/uav1/goal", "std_msgs/String", "-", "--json"}, domain(),
+              "{\"data\": \"a\"}\n\ndata: b\n{data: 'the last line needs no end'}");
+  const auto all = child.finish();
+  EXPECT_EQ(all.status, 0) << all.err;
+  EXPECT_EQ(goals(), (std::vector<std::string>{"a", "b", "the last line needs no end"}));
+  EXPECT_EQ(std::ranges::count(all.out, '\n'), 3);
+  EXPECT_EQ(Json::parse(all.out.substr(all.out.find('\n', all.out.find('\n') + 1)))["published"], 3);
+  Child wrong({"topic", "pub", "/uav1/goal", "std_msgs/String", "-"}, domain(),
+              "{data: c}\n{dat: d}\n{data: e}\n");
+  const auto refused = wrong.finish();
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err, HasSubstr("did you mean data?"));
+  EXPECT_EQ(goals().size(), 4u) << "those before the wrong one, and none behind it";
+}
+
 TEST_F(Verbs, ListsNodes) {
   const auto list = run({"node", "list"});
   EXPECT_EQ(list.status, 0) << list.err;
