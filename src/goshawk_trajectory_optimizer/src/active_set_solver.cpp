@@ -94,11 +94,12 @@ ActiveSetSolver::Outcome ActiveSetSolver::solve(const SplineProblem& problem,
                                                 const Settings& settings) {
   Outcome out;
   memory_->load(problem);
+  if (!memory_->finite) return out;
   if (memory_->constant_violated) {
     out.status = Status::infeasible;
     return out;
   }
-  if (memory_->finite) iterate(settings, out);
+  iterate(settings, out);
   solution_.resize(problem.joints.size());
   for (int k = 0; k <= problem.pieces(); ++k) solution_[std::size_t(k)] = memory_->joint(k);
   return out;
