@@ -175,6 +175,13 @@ class Replay(RecordingCase):
         self.assertGreater(self.json_object(outcome)["published"], 0)
         self.assertLess(self.json_object(outcome)["published"], 80)
 
+    def test_no_turns_are_given_that_were_not_recorded(self):
+        outcome = self.sandbox.goshawk("replay", self.file, "--lock-step", "tracker")
+        self.assert_civil(outcome)
+        self.assertEqual(outcome.status, 2, str(outcome))
+        self.assertIn("/tracker", outcome.err)
+        self.assertIn("not recorded in lock step", outcome.err)
+
     def test_loop_goes_on_until_it_is_stopped(self):
         process = self.sandbox.start(GOSHAWK, "replay", self.file, "--loop", "--rate", "50",
                                      "--json", "--wait", "0")
