@@ -15,7 +15,7 @@ namespace {
 constexpr double kLookPeriod_s = 0.05;  // for new topics
 constexpr double kFlushPeriod_s = 1.0;  // what kill -9 may cost
 
-struct Options {
+struct RecordCall {
   std::vector<std::string> topics;
   std::vector<std::string> exclude;
   std::string file;
@@ -49,7 +49,7 @@ std::string dated_name() {
   return name;
 }
 
-void add_options(CLI::App& app, Options& o) {
+void add_options(CLI::App& app, RecordCall& o) {
   app.add_option("topics", o.topics, "names, or beginnings like /uav1/* (default: all)");
   app.add_option("-o,--output", o.file, "file (default recording_DATE.mcap)");
   app.add_option("-x,--exclude", o.exclude, "topic not to record; may repeat")->expected(1);
@@ -81,7 +81,7 @@ double megabytes(std::uint64_t bytes) {
   return double(bytes) * 1e-6;
 }
 
-void print_end(const Recorder& recorder, const Options& o, double seconds) {
+void print_end(const Recorder& recorder, const RecordCall& o, double seconds) {
   const auto counts = recorder.counts();
   const auto& state = recorder.state();
   if (o.json) {
@@ -110,7 +110,7 @@ void print_end(const Recorder& recorder, const Options& o, double seconds) {
   }
 }
 
-int record(const Options& o) {
+int record(const RecordCall& o) {
   const Interruptible interruptible;
   if (o.stop_with_parent) prctl(PR_SET_PDEATHSIG, SIGINT);
   auto sink = create_file(o.file, o.overwrite);
@@ -142,7 +142,7 @@ int record(const Options& o) {
 
 int record_command(const std::vector<std::string>& arguments) {
   CLI::App app("Record topics of the domain to an MCAP file.", "goshawk record");
-  Options o;
+  RecordCall o;
   add_options(app, o);
   if (const auto status = parse(app, arguments)) return *status;
   for (auto* names : {&o.topics, &o.exclude}) {

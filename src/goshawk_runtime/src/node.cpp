@@ -280,6 +280,12 @@ void Node::every(double period_s, std::function<void()> callback) {
   impl_->timers.push_back({period_ns, impl_->timer_now_ns() + period_ns, std::move(callback)});
 }
 
+void Node::serve(std::unique_ptr<LiveParameters> parameters) {
+  // Asked for twice, as a component may: the newest counts.
+  if (impl_->parameters != nullptr) return impl_->parameters->replace(std::move(parameters));
+  impl_->parameters = std::make_unique<ParameterService>(*this, std::move(parameters));
+}
+
 void Node::spin() {
   while (!impl_->stopping) spin_some(kLongest_s);
 }

@@ -16,12 +16,6 @@ Result<std::pair<std::string, std::string>> split(const std::string& text, const
   return std::pair{text.substr(0, at), text.substr(at + 2)};
 }
 
-// -p name:="'5'" is the string 5, as in a YAML file.
-bool is_quoted(const std::string& value) {
-  return value.size() >= 2 && (value.front() == '"' || value.front() == '\'') &&
-         value.back() == value.front();
-}
-
 Status add_remap(RosArgs& args, const std::string& text) {
   auto rule = split(text, "remapping");
   if (!rule) return rule.error();
@@ -112,9 +106,7 @@ Result<ParameterSource> RosArgs::parameters_of(std::string_view name) const {
   }
   for (const auto& o : overrides) {
     if (!o.node.empty() && o.node != name) continue;
-    const bool quoted = is_quoted(o.value);
-    const std::string text = quoted ? o.value.substr(1, o.value.size() - 2) : o.value;
-    source.set(o.name, {text, "-p", quoted, ""});
+    source.set(o.name, ParameterSource::written(o.value, "-p"));
   }
   return source;
 }

@@ -100,13 +100,13 @@ class Outcome:
 class Process:
     """A program that runs beside the test; its output goes to files. Stopped by its own id."""
 
-    def __init__(self, command, env, folder, cwd=None):
+    def __init__(self, command, env, folder, cwd=None, stdin=subprocess.DEVNULL):
         self.command = [str(word) for word in command]
         name = f"{os.path.basename(self.command[0])}-{uuid.uuid4().hex[:8]}"
         self.out_path, self.err_path = (folder / f"{name}.{end}" for end in ("out", "err"))
         with open(self.out_path, "wb") as out, open(self.err_path, "wb") as err:
-            self.process = subprocess.Popen(self.command, stdin=subprocess.DEVNULL, stdout=out,
-                                            stderr=err, env=env, cwd=cwd)
+            self.process = subprocess.Popen(self.command, stdin=stdin, stdout=out, stderr=err,
+                                            env=env, cwd=cwd)
         self.begin = time.monotonic()
 
     @property
@@ -137,6 +137,8 @@ class Process:
             if self.wait(timeout_s) is None:
                 self.process.kill()
                 self.process.wait()
+        if self.process.stdin:
+            self.process.stdin.close()
         return self.process.returncode, time.monotonic() - begin
 
     def outcome(self):
@@ -177,6 +179,25 @@ def processes_of(token):
     return found
 
 
+class Publisher:
+    """`goshawk topic pub`, which writes a message whenever it is told to."""
+
+    def __init__(self, sandbox, topic, kind):
+        self.process = sandbox.start(GOSHAWK, "topic", "pub", topic, kind, "-", "--json",
+                                     "--timeout", "10", stdin=subprocess.PIPE)
+        self.sent = 0
+
+    def send(self, message):
+        """Returns once all who read the topic reliably have it."""
+        self.process.process.stdin.write(json.dumps(message).encode() + b"\n")
+        self.process.process.stdin.flush()
+        self.sent += 1
+        until(lambda: len(self.process.lines()) == self.sent or not self.process.alive(), 20.0,
+              0.01)
+        if len(self.process.lines()) != self.sent:
+            raise AssertionError(f"nobody took the message: {self.process.outcome()}")
+
+
 class Sandbox:
     """A domain, a folder, an environment; close() ends what is still there and tells of it."""
 
@@ -206,8 +227,9 @@ class Sandbox:
         self.temporary.cleanup()
         return told
 
-    def start(self, *command, env=None, cwd=None):
-        process = Process(command, {**self.env, **(env or {})}, self.folder, cwd or self.folder)
+    def start(self, *command, env=None, cwd=None, **options):
+        process = Process(command, {**self.env, **(env or {})}, self.folder, cwd or self.folder,
+                          **options)
         self.processes.append(process)
         return process
 

@@ -8,7 +8,7 @@ import signal
 import time
 
 import harness
-from harness import GOSHAWK, SystemTest, until
+from harness import GOSHAWK, Publisher, SystemTest, until
 from stack import Launch
 
 PLANNING = ["map_server", "path_search", "corridor_builder", "trajectory_optimizer"]
@@ -21,9 +21,9 @@ GOALS = [(3, 8, 2), (3.5, 6.1, 1.1), (3, 4, 1.5), (0.5, 0.5, 0.5)]
 
 
 class RecordingCase(SystemTest):
-    def record(self, name, *options):
+    def record(self, name, *options, env=None):
         file = self.sandbox.folder / name
-        process = self.sandbox.start(GOSHAWK, "record", "-o", file, "--json", *options)
+        process = self.sandbox.start(GOSHAWK, "record", "-o", file, "--json", *options, env=env)
         self.assertTrue(until(lambda: "recording to" in process.err(), 10), str(process.outcome()))
         return file, process
 
@@ -138,14 +138,25 @@ class Recording(RecordingCase):
 
 
 class Replay(RecordingCase):
+    """Of one recording, which the first test makes."""
+
+    recorded = None
+
     def setUp(self):
         super().setUp()
-        self.file, process = self.record("r.mcap")
+        if Replay.recorded is None:
+            Replay.recorded = self.make().read_bytes()
+        self.file = self.sandbox.folder / "played.mcap"
+        self.file.write_bytes(Replay.recorded)
+
+    def make(self):
+        file, process = self.record("r.mcap")
         points = [self.pub(f"point{k}", "geometry_msgs/msg/Point", {"x": float(k)}, "-r", "20",
                            "-n", "40") for k in range(2)]
         for point in points:
             self.assertEqual(point.wait(30), 0, str(point.outcome()))
         process.stop()
+        return file
 
     def test_rate_prefix_choice_and_quality_of_service(self):
         again, process = self.record("again.mcap")
@@ -183,9 +194,10 @@ class Replay(RecordingCase):
         self.assertIn("not recorded in lock step", outcome.err)
 
     def test_loop_goes_on_until_it_is_stopped(self):
+        heard = self.sandbox.start(GOSHAWK, "topic", "echo", "point1", "--json", "--timeout", "60")
         process = self.sandbox.start(GOSHAWK, "replay", self.file, "--loop", "--rate", "50",
                                      "--json", "--wait", "0")
-        time.sleep(2.0)
+        until(lambda: len(heard.lines()) > 80 or not process.alive(), 20.0)
         self.assertTrue(process.alive(), str(process.outcome()))
         status, _ = process.stop()
         self.assertEqual(status, 0)
@@ -205,62 +217,89 @@ def without_times(value):
 class ReplayedStages(RecordingCase):
     """Each planning stage alone, fed from a recording, answers as it did in the recording."""
 
-    def launch(self, stages, name, *ros_args):
+    def launch(self, stages, name, *ros_args, env=None):
+        """@return the launch, once all of its stages are ready, and their reports"""
         file = self.sandbox.folder / f"{name}.yaml"
         file.write_text(json.dumps({"stages": [{"component": s} for s in stages]}))
         reports = self.sandbox.start(GOSHAWK, "topic", "echo", "stage_report", "--json",
-                                     "--timeout", "60")
-        launch = Launch(self.sandbox, file, *ros_args)
+                                     "--timeout", "60", env=env)
+        launch = Launch(self.sandbox, file, *ros_args, env=env)
         self.assertTrue(until(lambda: {r["stage"] for r in reports.lines()} >= set(stages), 30),
                         launch.tails())
-        reports.stop()
-        return launch
+        return launch, reports
 
     def request(self, number, goal):
         def state(x, y, z):
             return {"position": {"x": x, "y": y, "z": z}}
         now = time.time_ns()
-        message = {"header": {"frame_id": "map", "stamp": {"sec": now // 10**9,
-                                                           "nanosec": now % 10**9}},
-                   "id": number, "start": state(3.0, 0.0, 1.0), "goal": state(*map(float, goal)),
-                   "limits": {"v_max": 2.0, "a_max": 2.0}, "deadline": 10.0}
-        process = self.pub("plan_request", "goshawk_msgs/msg/PlanRequest", message, "--once",
-                           "--timeout", "10")
-        self.assertEqual(process.wait(20), 0, str(process.outcome()))
+        return {"header": {"frame_id": "map", "stamp": {"sec": now // 10**9,
+                                                        "nanosec": now % 10**9}},
+                "id": number, "start": state(3.0, 0.0, 1.0), "goal": state(*map(float, goal)),
+                "limits": {"v_max": 2.0, "a_max": 2.0}, "deadline": 10.0}
 
     def test_every_stage_answers_with_the_same_bytes(self):
-        world = self.sandbox.folder / "world.bt"
-        self.assertEqual(self.sandbox.goshawk("world", world, "--json").status, 0)
-        file, process = self.record("plans.mcap")
-        launch = self.launch(PLANNING, "planning", "-p", f"map_server:map_file:={world}")
-        for number, goal in enumerate(GOALS, 1):
-            self.request(number, goal)
-        time.sleep(0.5)
-        launch.process.stop()
-        process.stop()
+        file = self.record_plans()
         counts = self.contents(file)["counts"]
         self.assertEqual(counts.get("/plan_request"), len(GOALS), counts)
         for topic in ("/path", "/corridor", "/trajectory"):
             self.assertGreaterEqual(counts[topic], 2, counts)
-        for stage, (inputs, output) in INPUTS.items():
+        # Each in a domain of its own, all at once.
+        started = {stage: self.start_stage(file, stage) for stage in INPUTS}
+        for stage, (again, process, launch, reports, played) in started.items():
             with self.subTest(stage=stage):
-                self.check_stage(file, stage, inputs, output)
+                self.assertEqual(played.wait(60.0), 0, str(played.outcome()))
+                wanted = len(answers_of(stage, [m["value"] for m in self.messages(
+                    file, "stage_report")]))
+                until(lambda: len(answers_of(stage, reports.lines())) >= wanted, 20.0)
+                time.sleep(0.3)  # for one answer too many
+                launch.process.stop()
+                process.stop()
+                self.compare(file, again, stage, launch)
 
-    def check_stage(self, file, stage, inputs, output):
-        again, process = self.record(f"{stage}.mcap", output)
-        launch = self.launch([stage], stage)
-        played = self.sandbox.goshawk("replay", file, "--restamp", "--topics", *inputs,
-                                      "--wait", "2", "--json")
-        self.assertEqual(played.status, 0, str(played))
-        time.sleep(0.3)
+    def record_plans(self):
+        world = self.sandbox.folder / "world.bt"
+        self.assertEqual(self.sandbox.goshawk("world", world, "--json").status, 0)
+        file, process = self.record("plans.mcap")
+        launch, reports = self.launch(PLANNING, "planning", "-p", f"map_server:map_file:={world}")
+        requests = Publisher(self.sandbox, "plan_request", "goshawk_msgs/msg/PlanRequest")
+        for number, goal in enumerate(GOALS, 1):
+            requests.send(self.request(number, goal))
+        def ends():
+            """A request ends with a trajectory, or with the stage that cannot go on."""
+            return [r for r in reports.lines() if r["request_id"] != 0 and
+                    (r["code"] != "ok" or r["stage"] == "trajectory_optimizer")]
+        self.assertTrue(until(lambda: len(ends()) >= len(GOALS), 20.0), launch.tails())
+        time.sleep(0.5)  # the recorder may be behind
+        requests.process.stop()
+        reports.stop()
         launch.process.stop()
         process.stop()
+        return file
+
+    def start_stage(self, file, stage):
+        """The stage, a recorder of its output, and what it is fed with."""
+        inputs, output = INPUTS[stage]
+        domain = harness.Domain()
+        self.addCleanup(domain.close)
+        env = {"ROS_DOMAIN_ID": str(domain.number)}
+        again, process = self.record(f"{stage}.mcap", output, env=env)
+        launch, reports = self.launch([stage], stage, env=env)
+        played = self.sandbox.start(GOSHAWK, "replay", file, "--restamp", "--topics", *inputs,
+                                    "--wait", "2", "--json", env=env)
+        return again, process, launch, reports, played
+
+    def compare(self, file, again, stage, launch):
+        _, output = INPUTS[stage]
         then, now = self.messages(file, output), self.messages(again, output)
         self.assertEqual(len(now), len(then), launch.tails())
         for old, new in zip(then, now):
             self.assertEqual(new["bytes"], old["bytes"])
             self.assertEqual(without_times(new["value"]), without_times(old["value"]))
         harness.note(f"{stage}: {len(now)} answers the same")
+
+
+def answers_of(stage, reports):
+    return [r for r in reports if r["stage"] == stage and r["request_id"] != 0]
 
 
 OUTPUTS = {
