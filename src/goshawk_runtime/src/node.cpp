@@ -167,7 +167,7 @@ int Node::Impl::take_some(const Node& node, Subscription& s) {
       }
       continue;
     }
-    call(node, s.topic, s.callback, s.object, 
+    call(node, s.topic, s.callback, s.object,
          MessageInfo{node.now_ns(), info.source_timestamp.to_ns()});
     if (stopping) return i + 1;
   }

@@ -6,6 +6,7 @@
 #include <sstream>
 #include <thread>
 
+#include "foxglove_times.hpp"
 #include "goshawk/introspection/codec.hpp"
 #include "goshawk/introspection/schema.hpp"
 #include "goshawk/runtime/component.hpp"
@@ -63,16 +64,6 @@ ServerOptions server_options(const Config& c) {
   options.clients = c.clients;
   options.queue_bytes = std::size_t(c.queue_mb) << 20U;
   return options;
-}
-
-/// Foxglove's panels write times as {sec, nsec}, as ROS 1 did. Nested no deeper than any type is.
-void rename_nanoseconds(nlohmann::ordered_json& value, int depth = 0) {
-  if (!value.is_object() || depth > 20) return;
-  if (value.size() == 2 && value.contains("sec") && value.contains("nsec")) {
-    value = {{"sec", value["sec"]}, {"nanosec", value["nsec"]}};
-    return;
-  }
-  for (auto& [name, inner] : value.items()) rename_nanoseconds(inner, depth + 1);
 }
 
 /// A topic of the domain: read from the first subscription on.
