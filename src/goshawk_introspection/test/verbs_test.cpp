@@ -264,7 +264,8 @@ TEST_F(Verbs, PublishesAMessageALineFromStandardInput) {
   EXPECT_EQ(all.status, 0) << all.err;
   EXPECT_EQ(goals(), (std::vector<std::string>{"a", "b", "the last line needs no end"}));
   EXPECT_EQ(std::ranges::count(all.out, '\n'), 3);
-  EXPECT_EQ(Json::parse(all.out.substr(all.out.find('\n', all.out.find('\n') + 1)))["published"], 3);
+  EXPECT_EQ(Json::parse(all.out.substr(all.out.find('\n', all.out.find('\n') + 1)))["published"],
+            3);
   Child wrong({"topic", "pub", "/uav1/goal", "std_msgs/String", "-"}, domain(),
               "{data: c}\n{dat: d}\n{data: e}\n");
   const auto refused = wrong.finish();
