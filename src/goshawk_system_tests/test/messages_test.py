@@ -279,8 +279,18 @@ class Tools(StackTest):
             self.assertEqual(answer["component"], stage)
             for parameter in answer["parameters"]:
                 self.assertEqual(set(parameter),
-                                 {"name", "type", "unit", "default", "range", "text"})
+                                 {"name", "type", "unit", "default", "range", "text",
+                                  "at_run_time"})
             self.assertTrue(answer["parameters"])
+            self.check_that_the_stage_can_change(stage, answer["parameters"])
+
+    def check_that_the_stage_can_change(self, stage, parameters):
+        """What is said to change at run time does: here to the defaults, all at once."""
+        wanted = [word for p in parameters if p["at_run_time"]
+                  for word in (p["name"], p["default"])]
+        if wanted:
+            answer = self.ask("param", "set", stage, *wanted)[0]
+            self.assertEqual(len(answer["parameters"]), len(wanted) // 2)
 
     def test_doctor_finds_nothing_wrong_with_a_flight(self):
         answer = self.ask_until(lambda a: all(stage in str(a) for stage in STAGES), "doctor")

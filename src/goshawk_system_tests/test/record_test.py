@@ -282,5 +282,110 @@ def answers_of(stage, reports):
     return [r for r in reports if r["stage"] == stage and r["request_id"] != 0]
 
 
+OUTPUTS = {
+    "map_server": ["map/voxels", "map/voxels/updates", "octomap_binary"],
+    "path_search": ["path"],
+    "corridor_builder": ["corridor"],
+    "trajectory_optimizer": ["trajectory"],
+    "navigator": ["plan_request", "committed_trajectory", "navigator_state", "navigator_alive",
+                  "path_line", "markers"],
+    "tracker": ["command", "tracking_state"],
+}
+MEASURED = ("path", "corridor", "trajectory")  # hold compute_ns, the time that an answer took
+ALL_INPUTS = ["goal_pose", "odom", "cloud_in", "map/*", "plan_request", "path", "corridor",
+              "trajectory", "stage_report", "committed_trajectory", "navigator_alive"]
+RECORDER = "goshawk_record"
+FLIGHT_S = 7.5  # of simulated time
+
+
+def without(value, name):
+    if isinstance(value, dict):
+        return {k: without(v, name) for k, v in value.items() if k != name}
+    if isinstance(value, list):
+        return [without(v, name) for v in value]
+    return value
+
+
+class LockStepReplay(RecordingCase):
+    """Every stage, fed from the recording of a flight in lock step, says the same bytes again: time
+    is what the recorded turns say, and messages come in the turn in which they came."""
+
+    def launch(self, name, stages):
+        file = self.sandbox.folder / f"{name}.yaml"
+        file.write_text(json.dumps({"container": True, "stages": stages}))
+        return Launch(self.sandbox, file)
+
+    def fly(self):
+        """@return the recording of a flight of all stages"""
+        world = self.sandbox.folder / "world.bt"
+        self.assertEqual(self.sandbox.goshawk("world", world, "--json").status, 0)
+        file, recorder = self.record("flight.mcap", "--lock-step")
+        pilot = self.sandbox.start(harness.PREFIX / "bin" / "goshawk_lock_step_pilot", FLIGHT_S)
+        stages = [{"component": s, "params": {"lock_step": True}} for s in OUTPUTS]
+        stages[0]["params"]["map_file"] = str(world)
+        followers = ["pilot", *OUTPUTS, RECORDER]
+        stages.append({"component": "simulator",
+                       "params": {"lock_step_nodes": ",".join(followers), "speed": 0.0}})
+        launch = self.launch("flight", stages)
+        self.assertEqual(pilot.wait(60), 0, launch.tails())
+        launch.process.stop()
+        self.assertEqual(recorder.stop()[0], 0, str(recorder.outcome()))
+        return file
+
+    def replay(self, file):
+        """@return the recording of what all stages answer to it, under /again"""
+        again, recorder = self.record("again.mcap", "again/*", "--lock-step")
+        stages = [{"component": stage, "params": {"lock_step": True},
+                   "remap": {topic: f"again/{topic}" for topic in outputs}}
+                  for stage, outputs in OUTPUTS.items()]
+        stages[0]["params"]["map_file"] = str(self.sandbox.folder / "world.bt")
+        for stage in stages:
+            if stage["component"] != "navigator":  # which reads what the others report
+                stage["remap"]["stage_report"] = "again/stage_report"
+        launch = self.launch("again", stages)
+        played = self.sandbox.goshawk("replay", file, "--topics", *ALL_INPUTS, "--json",
+                                      "--lock-step", *OUTPUTS, RECORDER)
+        self.assertEqual(played.status, 0, f"{played}\n{launch.tails()}")
+        launch.process.stop()
+        self.assertEqual(recorder.stop()[0], 0, str(recorder.outcome()))
+        return again
+
+    def test_every_stage_says_the_same_bytes(self):
+        file = self.fly()
+        again = self.replay(file)
+        counts = self.contents(file)["counts"]
+        states = [m["value"]["state"] for m in self.messages(file, "navigator_state")]
+        self.assertIn("flying", states)
+        self.assertGreater(counts["/odom"], 1500)
+        for stage, topics in OUTPUTS.items():
+            for topic in topics:
+                with self.subTest(stage=stage, topic=topic):
+                    self.compare(file, again, topic)
+
+    def compare(self, file, again, topic):
+        then, now = self.messages(file, topic), self.messages(again, f"again/{topic}")
+        harness.note(f"{topic}: {len(then)} messages, again {len(now)}")
+        # The world stands still wherever in a step the pilot left it.
+        self.assertLessEqual(abs(len(now) - len(then)), 2)
+        self.assertGreater(len(now), 0)
+        for k, (old, new) in enumerate(zip(then, now)):
+            if topic in MEASURED:
+                old, new = (without(m, "compute_ns")["value"] for m in (old, new))
+                self.assertEqual(new, old, f"message {k}")
+            else:
+                self.assertEqual((new["bytes"], new["crc32"]), (old["bytes"], old["crc32"]),
+                                 f"message {k}: {first_difference(old['value'], new['value'])}")
+
+
+def first_difference(old, new, path=""):
+    if isinstance(old, dict) and isinstance(new, dict):
+        pairs = [(f"{path}.{k}", old[k], new.get(k)) for k in old]
+    elif isinstance(old, list) and isinstance(new, list) and len(old) == len(new):
+        pairs = [(f"{path}[{i}]", *both) for i, both in enumerate(zip(old, new))]
+    else:
+        return None if old == new else f"{path} was {str(old)[:200]}, is {str(new)[:200]}"
+    return next(filter(None, (first_difference(a, b, p) for p, a, b in pairs)), None)
+
+
 if __name__ == "__main__":
     harness.main()

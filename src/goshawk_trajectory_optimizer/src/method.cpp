@@ -258,11 +258,19 @@ bool TrajectoryOptimizer::Method::solve_fixed(const Request& request, Plan& plan
     last_.status = SplineSolver::Status::infeasible;
     return false;
   }
-  last_ = solver_.solve(problem_,
-                        {config_.max_iterations, 1e-7, 1e-9, 1e-9, 1e-6, request.out_of_time});
+  const SplineSolver::Settings settings{
+      config_.max_iterations, 1e-7, 1e-9, 1e-9, 1e-6, request.out_of_time};
+  last_ = active_set_.solve(problem_, settings);
   iterations_ += last_.iterations;
+  const bool decided = !getenv("IP") && (last_.status == SplineSolver::Status::solved ||
+                       last_.status == SplineSolver::Status::infeasible ||
+                       last_.status == SplineSolver::Status::stopped);
+  if (!decided) {
+    last_ = solver_.solve(problem_, settings);
+    iterations_ += last_.iterations;
+  }
   if (last_.status != SplineSolver::Status::solved) return false;
-  take_solution(request, solver_.joints(), units_, 1.0, plan);
+  take_solution(request, decided ? active_set_.joints() : solver_.joints(), units_, 1.0, plan);
   return true;
 }
 
