@@ -184,13 +184,14 @@ std::string record_clouds(const std::string& file) {
 
 TEST(ConformMapServer, RecordedCloudsMustChangeTheMapOrBeRefused) {
   const std::string file = record_clouds(testing::TempDir() + "conform_clouds.mcap");
-  const auto reports = examine_all<ForeignMap, MapFault>({.stage = "map_server", .input = file},
-                                                         {MapFault::none, MapFault::silent});
-  EXPECT_THAT(failed(reports[0]), IsEmpty());
-  EXPECT_THAT(failed(reports[1]), Contains("answers every recorded cloud"));
-  const auto recorded = std::ranges::find(reports[0].items, "answers every recorded cloud",
-                                          &conformance::Item::name);
-  EXPECT_NE(recorded, reports[0].items.end());
+  const std::string item = "answers every recorded cloud";
+  const auto good = examine<ForeignMap>({.stage = "map_server", .input = file}, MapFault::none);
+  EXPECT_THAT(failed(good), IsEmpty());
+  EXPECT_NE(std::ranges::find(good.items, item, &conformance::Item::name), good.items.end());
+  // Each cloud that is passed over in silence is waited for.
+  const auto silent = examine<ForeignMap>({.stage = "map_server", .input = file, .timeout_s = 0.4},
+                                          MapFault::silent);
+  EXPECT_THAT(failed(silent), Contains(item));
 }
 
 TEST(ConformMapServer, ARecordingWithoutCloudsIsASentence) {

@@ -56,9 +56,10 @@ void add_options(CLI::App& app, RecordCall& o) {
   app.add_flag("--overwrite", o.overwrite, "replace the file where it exists");
   app.add_option("-d,--duration", o.duration_s, "[s] end by itself after this time")
       ->check(CLI::Range(0.0, 1e9));
-  app.add_flag("--lock-step", o.lock_step,
-               "take turns as node goshawk_record: name it last in the plant's lock_step_nodes, and "
-               "no message is lost; times are simulated");
+  app.add_flag(
+      "--lock-step", o.lock_step,
+      "take turns as node goshawk_record: name it last in the plant's lock_step_nodes, and "
+      "no message is lost; times are simulated");
   app.add_flag("--stop-with-parent", o.stop_with_parent,
                "end as on Ctrl-C when the process that started this one ends");
   app.add_flag("--json", o.json, "print one JSON object at the end (docs/cli.md)");
