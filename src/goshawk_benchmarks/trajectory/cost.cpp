@@ -92,7 +92,7 @@ SplineProblem fixed_problem(int segments) {
 }
 
 Json fixed_row(int segments, int rounds) {
-  constexpr int kMostCompared = 50;  // beyond it the active set ends at its limit of steps
+  constexpr int kMostCompared = 100;  // longer ones the active set is not asked
   const SplineProblem problem = fixed_problem(segments);
   Json row = {{"problem", "fixed durations, one quintic a segment, 16 planes, per axis"},
               {"segments", segments},

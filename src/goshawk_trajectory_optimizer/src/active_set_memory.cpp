@@ -7,7 +7,7 @@
 namespace goshawk::trajectory_optimizer {
 namespace {
 
-constexpr int kMostActive = 512;  // more than that is no work for this method
+constexpr int kMostActive = 72;  // what more of them cost, the interior point does not
 
 Lanes four_of(const Vec3& v) {
   return Lanes{v[0], v[1], v[2], 0.0};
