@@ -36,21 +36,27 @@ inline double seconds_since(Steady::time_point begin) {
 /// A child whose output is collected; ends it after `most_s`, so that no test hangs.
 class Child {
  public:
-  explicit Child(std::vector<std::string> arguments, int in_domain = domain()) {
+  explicit Child(std::vector<std::string> arguments, int in_domain = domain(),
+                 const std::string& input = "") {
     setenv("ROS_DOMAIN_ID", std::to_string(in_domain).c_str(), 1);
     arguments.insert(arguments.begin(), INTROSPECTION_CLI);
     std::vector<char*> argv;
     for (auto& argument : arguments) argv.push_back(argument.data());
     argv.push_back(nullptr);
-    int out[2], err[2];
+    int in[2], out[2], err[2];
+    EXPECT_EQ(pipe2(in, O_CLOEXEC), 0);
+    EXPECT_EQ(write(in[1], input.data(), input.size()), ssize_t(input.size()));  // a pipe holds it
+    close(in[1]);
     EXPECT_EQ(pipe2(out, O_CLOEXEC), 0);
     EXPECT_EQ(pipe2(err, O_CLOEXEC), 0);
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_adddup2(&actions, in[0], 0);
     posix_spawn_file_actions_adddup2(&actions, out[1], 1);
     posix_spawn_file_actions_adddup2(&actions, err[1], 2);
     EXPECT_EQ(posix_spawn(&pid_, INTROSPECTION_CLI, &actions, nullptr, argv.data(), environ), 0);
     posix_spawn_file_actions_destroy(&actions);
+    close(in[0]);
     close(out[1]);
     close(err[1]);
     out_ = out[0];
@@ -108,6 +114,12 @@ class Child {
 
 inline Outcome run(std::vector<std::string> arguments, int in_domain = domain()) {
   return Child(std::move(arguments), in_domain).finish();
+}
+
+/// Of what is there, however long a busy machine takes to find it: it waits no longer than it must.
+inline Outcome find(std::vector<std::string> arguments) {
+  arguments.insert(arguments.end(), {"--timeout", "30"});
+  return run(std::move(arguments));
 }
 
 }  // namespace introspection_test

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <utility>
 
 namespace goshawk::runtime {
 namespace {
@@ -29,10 +30,17 @@ Status add_remap(RosArgs& args, const std::string& text) {
     return fail(ErrorCode::invalid_input,
                 "node name '" + to + "' holds a '/': set the namespace with -r __ns:=");
   }
-  for (const auto& name : {from, to}) {
+  const auto colon = from.find(':');
+  RosArgs::Remap remap{from, to};
+  if (colon != std::string::npos) {
+    remap.node = from.substr(0, colon);
+    remap.from = from.substr(colon + 1);
+    if (auto status = check_topic_name(remap.node); !status) return status;
+  }
+  for (const auto& name : {remap.from, remap.to}) {
     if (auto status = check_topic_name(name); !status) return status;
   }
-  args.remaps.emplace_back(from, to);
+  args.remaps.push_back(std::move(remap));
   return success();
 }
 
@@ -103,13 +111,14 @@ Result<ParameterSource> RosArgs::parameters_of(std::string_view name) const {
   return source;
 }
 
-std::string RosArgs::resolve_topic(std::string_view topic) const {
+std::string RosArgs::resolve_topic(std::string_view topic, std::string_view node) const {
   const auto absolute = [&](std::string_view name) {
     if (name.starts_with('/')) return std::string(name);
     return (node_namespace == "/" ? "" : node_namespace) + "/" + std::string(name);
   };
-  for (const auto& [from, to] : remaps) {
-    if (from == topic || absolute(from) == absolute(topic)) return absolute(to);
+  for (const auto& rule : remaps) {
+    if (!rule.node.empty() && rule.node != node) continue;
+    if (rule.from == topic || absolute(rule.from) == absolute(topic)) return absolute(rule.to);
   }
   return absolute(topic);
 }

@@ -6,6 +6,7 @@
 #include <sstream>
 #include <thread>
 
+#include "foxglove_times.hpp"
 #include "goshawk/introspection/codec.hpp"
 #include "goshawk/introspection/schema.hpp"
 #include "goshawk/runtime/component.hpp"
@@ -28,7 +29,7 @@ requires std::same_as<std::remove_const_t<Self>, Config>
 void describe(Self& c, Visitor&& visit) {
   visit("address", c.address, "", "IPv4 address to listen on; who can reach it can send goals",
         Anything{});
-  visit("port", c.port, "", "TCP port to listen on", Range{1, 65535});
+  visit("port", c.port, "", "TCP port to listen on; 0: any that is free", Range{0, 65535});
   visit("origins", c.origins, "",
         "web pages that may connect beside local ones and Foxglove's, with commas, or any",
         Anything{});
@@ -63,16 +64,6 @@ ServerOptions server_options(const Config& c) {
   options.clients = c.clients;
   options.queue_bytes = std::size_t(c.queue_mb) << 20U;
   return options;
-}
-
-/// Foxglove's panels write times as {sec, nsec}, as ROS 1 did. Nested no deeper than any type is.
-void rename_nanoseconds(nlohmann::ordered_json& value, int depth = 0) {
-  if (!value.is_object() || depth > 20) return;
-  if (value.size() == 2 && value.contains("sec") && value.contains("nsec")) {
-    value = {{"sec", value["sec"]}, {"nanosec", value["nsec"]}};
-    return;
-  }
-  for (auto& [name, inner] : value.items()) rename_nanoseconds(inner, depth + 1);
 }
 
 /// A topic of the domain: read from the first subscription on.

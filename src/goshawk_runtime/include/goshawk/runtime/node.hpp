@@ -35,6 +35,7 @@ class StartupFault : public std::runtime_error {
 
 struct MessageInfo {
   std::int64_t received_ns = 0;  // [ns] clock of the node, when its thread took the message
+  std::int64_t sent_ns = 0;      // [ns] the sender's system clock, when it was published
 };
 
 namespace detail {
