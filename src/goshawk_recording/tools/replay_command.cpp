@@ -137,15 +137,15 @@ Result<std::set<std::uint16_t>> choose(const Reader& reader, const Options& o) {
     if (!wanted(o, channel.topic, type_of(reader, channel))) continue;
     if (channel.message_encoding != "cdr" || type_of(reader, channel)[0] == '\0' ||
         !runtime::check_topic_name(channel.topic)) {
-      say("replay", channel.topic + " is left out: it is no topic of ROS 2, whose messages are CDR");
+      say("replay",
+          channel.topic + " is left out: it is no topic of ROS 2, whose messages are CDR");
       continue;
     }
     chosen.insert(id);
   }
   if (chosen.empty()) {
-    return fail(ErrorCode::invalid_input,
-                "nothing of " + o.file + " is to be played: it has " +
-                    (here.empty() ? "no topics" : here));
+    return fail(ErrorCode::invalid_input, "nothing of " + o.file + " is to be played: it has " +
+                                              (here.empty() ? "no topics" : here));
   }
   return chosen;
 }
@@ -202,11 +202,12 @@ int replay(const Options& o) {
   if (o.player.start_offset_s > duration_s(*reader)) {
     char text[32];
     std::snprintf(text, sizeof text, "%.3f", duration_s(*reader));
-    return report_failure("replay",
-                          fail(ErrorCode::invalid_parameter,
-                               std::string("--start-offset lies behind the end: the recording is ") +
-                                   text + " s long"),
-                          o.json, kWrongCall);
+    return report_failure(
+        "replay",
+        fail(ErrorCode::invalid_parameter,
+             std::string("--start-offset lies behind the end: the recording is ") + text +
+                 " s long"),
+        o.json, kWrongCall);
   }
   try {
     return play(*reader, *channels, o);
@@ -220,6 +221,11 @@ int replay(const Options& o) {
 int replay_command(const std::vector<std::string>& arguments) {
   CLI::App app("Play a recording over DDS: same topics, types, bytes and quality of service.",
                "goshawk replay");
+  app.footer(
+      "Examples:\n"
+      "  goshawk replay flight.mcap --list\n"
+      "  goshawk replay flight.mcap --rate 0.5 --loop --clock\n"
+      "  goshawk replay flight.mcap --topics /plan_request /map/* --restamp");
   Options o;
   add_options(app, o);
   if (const auto status = parse(app, arguments)) return *status;
