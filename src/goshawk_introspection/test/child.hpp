@@ -116,4 +116,10 @@ inline Outcome run(std::vector<std::string> arguments, int in_domain = domain())
   return Child(std::move(arguments), in_domain).finish();
 }
 
+/// Of what is there, however long a busy machine takes to find it: it waits no longer than it must.
+inline Outcome find(std::vector<std::string> arguments) {
+  arguments.insert(arguments.end(), {"--timeout", "30"});
+  return run(std::move(arguments));
+}
+
 }  // namespace introspection_test

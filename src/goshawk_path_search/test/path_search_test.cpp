@@ -152,7 +152,9 @@ TEST(PathSearch, ANewConfigAnswersAsOneThatBeganWithIt) {
     ASSERT_TRUE(changed.reconfigure(other));
     const auto wanted = fresh.plan(start, goal), got = changed.plan(start, goal);
     ASSERT_EQ(got.code(), wanted.code());
-    if (got) EXPECT_EQ(got->waypoints_map, wanted->waypoints_map);
+    if (got) {
+      EXPECT_EQ(got->waypoints_map, wanted->waypoints_map);
+    }
     ASSERT_TRUE(changed.reconfigure(Config{}));
   }
 }

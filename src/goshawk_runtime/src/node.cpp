@@ -160,10 +160,9 @@ int Node::Impl::take_some(const Node& node, Subscription& s) {
     if (!sample.decoded) {
       // The 1st, 2nd, 4th, 8th ...: a hostile sender must not fill the disk.
       if (std::has_single_bit(++s.undecoded)) {
-        node.log_->warn(
-            "a message on {} could not be decoded and was dropped ({} so far): does "
-            "its sender use the same IDL?",
-            s.topic, s.undecoded);
+        node.log_->warn("a message on {} could not be decoded and was dropped ({} so far): {}",
+                        s.topic, s.undecoded,
+                        sample.fault.empty() ? "does its sender use the same IDL?" : sample.fault);
       }
       continue;
     }

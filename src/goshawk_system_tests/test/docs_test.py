@@ -94,11 +94,18 @@ class Commands(SystemTest):
         return environment
 
     def here(self, line):
-        """The pages' examples write to /tmp; two runs of this test must not meet there."""
-        return line.replace("/tmp/", f"{self.sandbox.folder}/")
+        """The pages' examples write to /tmp and listen on ports that others may have: two runs of
+        this test must not meet there."""
+        line = line.split("  #")[0].replace("/tmp/", f"{self.sandbox.folder}/")
+        if re.search(r"goshawk view\b(?!.*--check)", line):
+            line += " --port 0 --no-open"
+            line += f" --bridge ws://127.0.0.1:{harness.free_port()}" if "--live" in line else ""
+        if "launch flight_view" in line:
+            line += " -p viewer_bridge:port:=0"
+        return line
 
     def start_line(self, line, exports):
-        words = shlex.split(self.here(line).split("  #")[0])
+        words = shlex.split(self.here(line))
         words[0] = str(self.sandbox.folder / words[0])
         name = " ".join(line.split()).replace("tools/fly", "goshawk fly")
         return name, self.sandbox.start(*words, env=self.environment(name, exports))

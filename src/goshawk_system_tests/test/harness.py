@@ -8,6 +8,7 @@ A test file ends with `harness.main()`; CTest calls it with the names of test cl
 import json
 import os
 import pathlib
+import random
 import signal
 import socket
 import subprocess
@@ -58,6 +59,18 @@ def udp_ports_in_use():
             continue
         ports.update(int(line.split()[1].rsplit(":", 1)[1], 16) for line in lines)
     return ports
+
+
+def free_port():
+    """For who must be told one: not of those that the kernel gives to whoever asks for any."""
+    for port in random.SystemRandom().sample(range(10000, 32000), 100):
+        with socket.socket() as s:
+            try:
+                s.bind(("127.0.0.1", port))
+                return port
+            except OSError:
+                continue
+    raise RuntimeError("no port from 10000 to 31999 is free")
 
 
 class Domain:

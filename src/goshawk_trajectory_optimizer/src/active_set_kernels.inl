@@ -135,6 +135,7 @@ void turn(ActiveSetState& s) {
   }
   const double force = __builtin_sqrt(sum(pull * pull));
   if (!(force > 0.0)) return;
+  ++s.turns;
   const Lanes from = pull / all(force), to = s.next.normal;
   const Lanes across = to - sum(to * from) * from;
   const double angle = __builtin_sqrt(sum(across * across));
@@ -164,6 +165,7 @@ void append(ActiveSetState& s) {
   for (int i = 0; i < k; ++i) row[i] = -inverse * s.change[i];
   row[k] = inverse;
   s.active[k] = s.next;
+  s.cuts += s.next.limit >= 0;
   ++s.count;
 }
 
@@ -190,6 +192,7 @@ void drop(ActiveSetState& s, int index) {
     row[final] = 0.0;
   }
   for (int j = 0; j < width; ++j) lanes_of(s.inverse_root + final * s.stride)[j] = Lanes{};
+  s.cuts -= s.active[index].limit >= 0;
   s.active[index] = s.active[final];
   s.column[index] = s.column[final];
   --s.count;

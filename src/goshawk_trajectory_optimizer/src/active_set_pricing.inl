@@ -120,7 +120,8 @@ void take_limit(ActiveSetState& s, long long index, int lane) {
   const Lanes direction = {w[0] * y[0], w[1] * y[1], w[2] * y[2], 0.0};
   to.normal = direction / all(__builtin_sqrt(sum(direction * y)));
   to.bound = 1.0;
-  to.limit = 4 * index + lane;
+  const int components = (w[0] > 0.0) + (w[1] > 0.0) + (w[2] > 0.0);
+  to.limit = components > 1 ? 4 * index + lane : -1;
 }
 
 void price(ActiveSetState& s) {

@@ -8,7 +8,12 @@
 namespace goshawk::trajectory_optimizer {
 namespace {
 
-constexpr int kStepsAPiece = 60;
+constexpr int kMostPieces = 40;  // with more, many constraints bind and rounding grows
+constexpr int kSteps = 30, kStepsAPiece = 8;
+// Where more balls bind than a few, or their directions hang together, the interior point is
+// faster.
+constexpr int kMostCuts = 16;
+constexpr int kMostTurns = 32;
 constexpr double kDependent = 1e-13;  // slope of a violation, relative: rounding
 constexpr int kMostPolishes = 5;
 constexpr int kMostRefinements = 5;
@@ -72,6 +77,15 @@ ActiveSetSolver::ActiveSetSolver(ActiveSetSolver&&) noexcept = default;
 ActiveSetSolver& ActiveSetSolver::operator=(ActiveSetSolver&&) noexcept = default;
 ActiveSetSolver::~ActiveSetSolver() = default;
 
+bool ActiveSetSolver::suits(const SplineProblem& problem) {
+  return !problem.scale && problem.pieces() <= kMostPieces;
+}
+
+bool ActiveSetSolver::decided(const Outcome& outcome) {
+  return outcome.status == Status::solved || outcome.status == Status::infeasible ||
+         outcome.status == Status::stopped;
+}
+
 int ActiveSetSolver::binding() const {
   return memory_->state.count;
 }
@@ -80,11 +94,12 @@ ActiveSetSolver::Outcome ActiveSetSolver::solve(const SplineProblem& problem,
                                                 const Settings& settings) {
   Outcome out;
   memory_->load(problem);
+  if (!memory_->finite) return out;
   if (memory_->constant_violated) {
     out.status = Status::infeasible;
     return out;
   }
-  if (memory_->finite) iterate(settings, out);
+  iterate(settings, out);
   solution_.resize(problem.joints.size());
   for (int k = 0; k <= problem.pieces(); ++k) solution_[std::size_t(k)] = memory_->joint(k);
   return out;
@@ -93,7 +108,7 @@ ActiveSetSolver::Outcome ActiveSetSolver::solve(const SplineProblem& problem,
 void ActiveSetSolver::iterate(const Settings& settings, Outcome& out) {
   ActiveSetState& s = memory_->state;
   const ActiveSetKernels& kernels = active_set_kernels();
-  const int most_steps = kStepsAPiece * s.last;
+  const int most_steps = kSteps + kStepsAPiece * s.last;
   s.face_tolerance = settings.feasibility;
   s.limit_tolerance = settings.limit_feasibility;
   if (!kernels.factor(s)) return;
@@ -118,6 +133,10 @@ void ActiveSetSolver::iterate(const Settings& settings, Outcome& out) {
       return;
     }
     kernels.turn(s);
+    if (s.cuts > kMostCuts || s.turns > kMostTurns) {
+      out.status = Status::iteration_limit;
+      return;
+    }
     const Step step = make_active(s, memory_->most_objective, most_steps, out.iterations);
     if (step == Step::infeasible) out.status = Status::infeasible;
     if (step == Step::full) out.status = Status::iteration_limit;

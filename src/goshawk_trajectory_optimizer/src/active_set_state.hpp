@@ -14,7 +14,7 @@ struct HalfSpace {
   int joint;
   double bound;
   double multiplier;
-  long long limit;  // which one it touches; -1: a face
+  long long limit;  // the ball that it touches; -1: a face, or a limit that is a plane
 };
 
 struct FourFaces {
@@ -69,6 +69,8 @@ struct ActiveSetState {
   // The working set W, and M with M'M = (A H^-1 A')^-1, square, rows of `stride` doubles.
   HalfSpace* active = nullptr;
   int count = 0, capacity = 0, stride = 0;
+  int cuts = 0;   // of balls, in W
+  int turns = 0;  // cuts of balls that were cut already
   double* inverse_root = nullptr;
   double* column = nullptr;  // A H^-1 a
   double* image = nullptr;   // M times it

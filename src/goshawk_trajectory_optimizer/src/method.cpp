@@ -258,13 +258,14 @@ bool TrajectoryOptimizer::Method::solve_fixed(const Request& request, Plan& plan
     last_.status = SplineSolver::Status::infeasible;
     return false;
   }
-  const SplineSolver::Settings settings{
-      config_.max_iterations, 1e-7, 1e-9, 1e-9, 1e-6, request.out_of_time};
-  last_ = active_set_.solve(problem_, settings);
-  iterations_ += last_.iterations;
-  const bool decided = !getenv("IP") && (last_.status == SplineSolver::Status::solved ||
-                       last_.status == SplineSolver::Status::infeasible ||
-                       last_.status == SplineSolver::Status::stopped);
+  const SplineSolver::Settings settings{config_.max_iterations, 1e-7, 1e-9, 1e-9, 1e-6,
+                                        request.out_of_time};
+  bool decided = false;
+  if (ActiveSetSolver::suits(problem_)) {
+    last_ = active_set_.solve(problem_, settings);
+    iterations_ += last_.iterations;
+    decided = ActiveSetSolver::decided(last_);
+  }
   if (!decided) {
     last_ = solver_.solve(problem_, settings);
     iterations_ += last_.iterations;

@@ -29,7 +29,7 @@ requires std::same_as<std::remove_const_t<Self>, Config>
 void describe(Self& c, Visitor&& visit) {
   visit("address", c.address, "", "IPv4 address to listen on; who can reach it can send goals",
         Anything{});
-  visit("port", c.port, "", "TCP port to listen on", Range{1, 65535});
+  visit("port", c.port, "", "TCP port to listen on; 0: any that is free", Range{0, 65535});
   visit("origins", c.origins, "",
         "web pages that may connect beside local ones and Foxglove's, with commas, or any",
         Anything{});
