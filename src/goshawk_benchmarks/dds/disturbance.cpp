@@ -193,11 +193,12 @@ struct Turns {
 }  // namespace
 
 void measure_disturbance(Report& report, int domain) {
-  const std::vector<Arrangement> arrangements = {
+  std::vector<Arrangement> arrangements = {
       {"a process each", "", {"s", "m", "n"}},
       {"writers in one, readers in another", "n", {"sm"}},
       {"one process", "smn", {}},
       {"one process, and a reader of maps outside", "sm", {"n"}}};
+  if (report.options().quick) arrangements.pop_back();
   // In short turns, so that a busy machine disturbs both alike; the quietest turn of each tells
   // what the maps alone do.
   const int turns = report.options().quick ? 1 : 6;
