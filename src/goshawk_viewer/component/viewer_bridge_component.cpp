@@ -1,7 +1,6 @@
 #include <spdlog/spdlog.h>
 #include <algorithm>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 #include <thread>
@@ -10,6 +9,7 @@
 #include "goshawk/introspection/schema.hpp"
 #include "goshawk/runtime/component.hpp"
 #include "goshawk/runtime/stage_reporter.hpp"
+#include "goshawk/viewer_bridge/client_json.hpp"
 #include "goshawk/viewer_bridge/server.hpp"
 
 namespace goshawk::viewer_bridge {
@@ -63,16 +63,6 @@ ServerOptions server_options(const Config& c) {
   options.clients = c.clients;
   options.queue_bytes = std::size_t(c.queue_mb) << 20U;
   return options;
-}
-
-/// Foxglove's panels write times as {sec, nsec}, as ROS 1 did. Nested no deeper than any type is.
-void rename_nanoseconds(nlohmann::ordered_json& value, int depth = 0) {
-  if (!value.is_object() || depth > 20) return;
-  if (value.size() == 2 && value.contains("sec") && value.contains("nsec")) {
-    value = {{"sec", value["sec"]}, {"nanosec", value["nsec"]}};
-    return;
-  }
-  for (auto& [name, inner] : value.items()) rename_nanoseconds(inner, depth + 1);
 }
 
 /// A topic of the domain: read from the first subscription on.
@@ -252,11 +242,9 @@ class ViewerBridgeComponent : public Component {
       if (auto json = introspection::cdr_to_json(type, event.bytes); !json) return json.error();
       return event.bytes;
     }
-    auto json =
-        nlohmann::ordered_json::parse(event.bytes.begin(), event.bytes.end(), nullptr, false);
-    rename_nanoseconds(json);
-    if (json.is_discarded()) return fail(ErrorCode::invalid_input, "this is no JSON");
-    return introspection::json_to_cdr(type, json);
+    auto json = client_json(event.bytes);
+    if (!json) return json.error();
+    return introspection::json_to_cdr(type, *json);
   }
 
   Node& node_;
