@@ -21,6 +21,7 @@ namespace msg = goshawk_msgs::msg;
 constexpr double kSetpointPeriod_s = 0.005, kMapPeriod_s = 0.5;
 constexpr std::uint32_t kMap_byte = 12'500'000;
 constexpr double kMeet_s = 20.0;
+constexpr std::size_t kMet = 20;  // setpoints: the two have found each other
 
 std::unique_ptr<Context> join(int domain) {
   ContextOptions options;
@@ -147,7 +148,9 @@ std::string without_maps(std::string roles, bool with_maps) {
   return roles;
 }
 
-Sample measure(const Arrangement& arrangement, bool with_maps, double time_s, int domain) {
+/// @param settle_s in which the maps begin
+Sample measure(const Arrangement& arrangement, bool with_maps, double settle_s, double time_s,
+               int domain) {
   const auto context = join(domain);
   SetpointReader reader(*context);
   Nodes here = make(without_maps(arrangement.here, with_maps), *context);
@@ -159,9 +162,9 @@ Sample measure(const Arrangement& arrangement, bool with_maps, double time_s, in
         std::vector<std::string>{this_program(), "--roles", roles}, domain));
   }
   for (auto& node : here) node->start();
-  wait_for(reader, 100, kMeet_s);
-  const bool met = reader.us.size() >= 100;
-  wait_for(reader, reader.us.size() + 200, 1.5);  // the maps have begun
+  wait_for(reader, kMet, kMeet_s);
+  const bool met = reader.us.size() >= kMet;
+  wait_for(reader, std::size_t(-1), settle_s);
   Sample sample;
   if (met) {
     reader.us.clear();
@@ -201,13 +204,14 @@ void measure_disturbance(Report& report, int domain) {
   // In short turns, so that a busy machine disturbs both alike; the quietest turn of each tells
   // what the maps alone do.
   const int turns = report.options().quick ? 1 : 6;
-  const double time_s = report.options().quick ? 1.0 : 2.5;
+  const double settle_s = report.options().quick ? 0.6 : 1.4;
+  const double time_s = report.options().quick ? 0.7 : 2.5;
   for (const auto& arrangement : arrangements) {
     Turns of[2];
     for (int turn = 0; turn < 2 * turns; ++turn) {
       const bool with_maps = turn % 2 == 1;
       report.progress(std::string(arrangement.name) + (with_maps ? ", with maps" : ""));
-      of[int(with_maps)].add(measure(arrangement, with_maps, time_s, domain));
+      of[int(with_maps)].add(measure(arrangement, with_maps, settle_s, time_s, domain));
     }
     for (const bool with_maps : {false, true}) {
       auto& [us, p99_us, lost] = of[int(with_maps)];

@@ -6,6 +6,7 @@
 
 #include "common/child.hpp"
 #include "goshawk/conversions/plan.hpp"
+#include "goshawk/recording/messages.hpp"
 #include "goshawk/runtime/component.hpp"
 #include "goshawk/runtime/node.hpp"
 
@@ -24,24 +25,6 @@ msg::PlanRequest& request_of(msg::PlanRequest& m) {
 template <typename Message>
 msg::PlanRequest& request_of(Message& m) {
   return m.request();
-}
-
-/// All messages of a topic; those that are no such message are left out.
-template <typename Message>
-std::vector<Message> load(recording::Reader& reader, const std::string& topic) {
-  std::vector<Message> messages;
-  recording::ReadOptions options;
-  options.channels.emplace();
-  for (const auto& [id, channel] : reader.channels()) {
-    if (channel.topic.ends_with("/" + topic)) options.channels->insert(id);
-  }
-  const auto read = reader.read(options, [&](const recording::MessageView& m) {
-    Message message;
-    if (decode<Message>({m.data.begin(), m.data.end()}, message)) messages.push_back(message);
-    return true;
-  });
-  if (!read) std::fprintf(stderr, "%s\n", read.error().message.c_str());
-  return messages;
 }
 
 /// What is measured: a program, or our component with a node and a thread as in the container.
@@ -104,9 +87,9 @@ class Feeder {
     return wait(kMeet_s, [&] { return inputs_.matched() > 0; });
   }
 
-  Result<FeedSamples> feed(const std::vector<Input>& inputs,
-                           const std::vector<msg::VoxelGrid>& maps) {
-    if (!maps.empty()) (void)maps_.publish(maps.back());
+  /// @param map or nullptr
+  Result<FeedSamples> feed(const std::vector<Input>& inputs, const msg::VoxelGrid* map) {
+    if (map != nullptr) (void)maps_.publish(*map);
     wait(kSettle_s, [] { return false; });
     std::int64_t begin_ns = 0;
     for (int k = 0; k < options_.count + kWarm; ++k) {
@@ -174,10 +157,10 @@ class Feeder {
 template <typename Input, typename Output>
 Result<FeedSamples> feed(const FeedOptions& options, const std::string& command,
                          recording::Reader& reader, const std::string& in, const std::string& out) {
-  const auto inputs = load<Input>(reader, in);
-  if (inputs.empty()) {
-    return fail(ErrorCode::invalid_input, options.input + " has no messages on " + in);
-  }
+  const auto inputs = recording::messages_of<Input>(reader, in);
+  if (!inputs) return inputs.error();
+  // A stage without a map gets along without.
+  const auto maps = recording::messages_of<msg::VoxelGrid>(reader, "map/voxels");
   ContextOptions context_options;
   context_options.domain = options.domain;
   auto context = Context::create(context_options);
@@ -188,7 +171,7 @@ Result<FeedSamples> feed(const FeedOptions& options, const std::string& command,
   if (!feeder.meet()) {
     return fail(ErrorCode::stage_silent, "nobody reads " + in + ": does '" + command + "' run?");
   }
-  return feeder.feed(inputs, load<msg::VoxelGrid>(reader, "map/voxels"));
+  return feeder.feed(*inputs, maps ? &maps->back() : nullptr);
 }
 
 }  // namespace

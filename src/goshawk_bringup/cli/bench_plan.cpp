@@ -32,7 +32,8 @@ struct Sample {
   std::map<std::string, std::pair<std::int64_t, std::int64_t>> stages;  // name: compute, wire
 };
 
-constexpr const char* kStages[] = {"path_search", "corridor_builder", "trajectory_optimizer"};
+constexpr const char* kPlanningStages[] = {"path_search", "corridor_builder",
+                                           "trajectory_optimizer"};
 constexpr std::uint64_t kFirstId = 1;
 
 /// Asks for plans as the navigator would, one after another, and times the answers.
@@ -60,7 +61,7 @@ class PlanTimer {
   }
 
   bool stages_ready() const {
-    return std::ranges::all_of(kStages, [&](const char* s) { return ready_.contains(s); });
+    return std::ranges::all_of(kPlanningStages, [&](const char* s) { return ready_.contains(s); });
   }
 
   /// @return the sample, or why there is none
@@ -72,7 +73,7 @@ class PlanTimer {
     if (auto s = requests_.publish(conversions::to_msg(request_)); !s) return s.error();
     const std::int64_t end_ns = request_.stamp_ns + std::int64_t(timeout_s * 1e9);
     while (node_.now_ns() < end_ns && !failure_ &&
-           (sample_.total_ns == 0 || sample_.stages.size() < std::size(kStages))) {
+           (sample_.total_ns == 0 || sample_.stages.size() < std::size(kPlanningStages))) {
       node_.spin_some(0.05);
     }
     if (failure_) return *failure_;
@@ -118,7 +119,7 @@ Json percentiles(const std::vector<std::int64_t>& values) {
           {"max_us", percentile_us(values, 1.0)}};
 }
 
-Json to_json(const std::vector<Sample>& samples, const BenchOptions& o) {
+Json result_json(const std::vector<Sample>& samples, const BenchOptions& o) {
   std::vector<std::int64_t> totals;
   std::vector<std::int64_t> wires;
   for (const auto& s : samples) {
@@ -216,7 +217,7 @@ int run(const BenchOptions& o) {
   if (!world) return report_failure(world.error(), o.json, kNotDone);
   const auto samples = measure(o, *world, folder.path(), *start, *goal, *limits);
   if (!samples) return report_failure(samples.error(), o.json, kNotDone);
-  const Json result = to_json(*samples, o);
+  const Json result = result_json(*samples, o);
   o.json ? print_json(result) : print(result);
   return kDone;
 }

@@ -40,7 +40,7 @@ constexpr Verb kVerbs[] = {
     {"topic", "list, info, echo, hz, delay, bw, pub",
      [](const cli::Arguments& a) { return introspection::topic_command(a); }},
     {"node", "list", [](const cli::Arguments& a) { return introspection::node_command(a); }},
-    {"param", "describe COMPONENT: every parameter with unit, default and range",
+    {"param", "list, get, set, dump of a node that runs; describe COMPONENT",
      [](const cli::Arguments& a) { return introspection::param_command(a); }},
     {"doctor", "look at machine, settings and domain: what does not fit, and how to mend it",
      [](const cli::Arguments& a) { return introspection::doctor_command(a); }},

@@ -11,6 +11,7 @@ import concurrent.futures
 import csv
 import json
 import math
+import os
 import pathlib
 import random
 import signal
@@ -66,6 +67,8 @@ class Flyer:
     def __init__(self, options):
         self.options = options
         self.goshawk = str(pathlib.Path(options.prefix) / "bin/goshawk")
+        # Each flight picks a domain of its own; in a given one they would meet.
+        self.env = {k: v for k, v in os.environ.items() if k != "ROS_DOMAIN_ID"}
         self.lock, self.running, self.stopping = threading.Lock(), set(), False
 
     def call(self, *words):
@@ -74,7 +77,8 @@ class Flyer:
             if self.stopping:
                 return NOT_DONE, {"ok": False, "code": "cancelled", "message": "interrupted"}
             process = subprocess.Popen([self.goshawk, *map(str, words), "--json"],
-                                       stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+                                       stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                                       env=self.env)
             self.running.add(process)
         try:
             out, err = process.communicate(timeout=MISSION_TIMEOUT_S)
@@ -280,11 +284,13 @@ def main():
     except OSError as error:
         print(f"goshawk campaign: io_failed: {error.filename}: {error.strerror}", file=sys.stderr)
         return NOT_DONE
+    done = (not interrupted and any(r["legs"] for r in rows) and
+            not any(r["verdict"] == "touched" for r in rows))
     if options.json:
-        print(json.dumps({"ok": not interrupted, **summary(rows), "folder": str(options.output)}))
+        print(json.dumps({"ok": done, **summary(rows), "folder": str(options.output)}))
     else:
         print_table(rows)
-    return NOT_DONE if interrupted or any(r["verdict"] == "touched" for r in rows) else DONE
+    return DONE if done else NOT_DONE
 
 
 if __name__ == "__main__":

@@ -151,7 +151,7 @@ class Plan:
             for key, value in stage.get("params", {}).items():
                 command += ["-p", f"{node}:{key}:={scalar(value)}"]
             for source, target in stage.get("remap", {}).items():
-                command += ["-r", f"{source}:={target}"]
+                command += ["-r", f"{node}:{source}:={target}"]
         # What the caller adds goes to every component; parameters name their node themselves.
         return command + self.extra
 

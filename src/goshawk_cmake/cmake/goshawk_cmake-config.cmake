@@ -41,7 +41,7 @@ macro(goshawk_project_setup)
   # OFF while one file is edited again and again.
   option(GOSHAWK_UNITY "Compile sources in batches" ON)
   set(CMAKE_UNITY_BUILD ${GOSHAWK_UNITY})
-  set(CMAKE_UNITY_BUILD_BATCH_SIZE 5)
+  set(CMAKE_UNITY_BUILD_BATCH_SIZE 10)
   find_program(GOSHAWK_CCACHE ccache)
   if(GOSHAWK_CCACHE)
     set(CMAKE_CXX_COMPILER_LAUNCHER ${GOSHAWK_CCACHE})

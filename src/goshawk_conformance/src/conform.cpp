@@ -40,11 +40,7 @@ Result<std::vector<Message>> load(const Options& o, const std::string& topic) {
   if (o.input.empty()) return std::vector<Message>{};
   auto reader = recording::Reader::open(o.input);
   if (!reader) return reader.error();
-  auto messages = recorded_messages<Message>(*reader, topic);
-  if (messages && messages->empty()) {
-    return fail(ErrorCode::invalid_input, o.input + " has no messages on " + topic);
-  }
-  return messages;
+  return recording::messages_of<Message>(*reader, topic);
 }
 
 Result<Report> examine_tracker(runtime::Context& context, const Options& o) {

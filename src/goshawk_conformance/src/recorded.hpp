@@ -5,31 +5,9 @@
 #include <set>
 
 #include "goshawk/conversions/grid.hpp"
-#include "goshawk/recording/reader.hpp"
-#include "goshawk/runtime/message_type.hpp"
+#include "goshawk/recording/messages.hpp"
 
 namespace goshawk::conformance {
-
-/// All messages of a topic in any namespace; those that are no such message are left out.
-template <typename Message>
-Result<std::vector<Message>> recorded_messages(recording::Reader& reader,
-                                               const std::string& topic) {
-  std::vector<Message> messages;
-  recording::ReadOptions options;
-  options.channels.emplace();
-  for (const auto& [id, channel] : reader.channels()) {
-    if (channel.topic.ends_with("/" + topic)) options.channels->insert(id);
-  }
-  const auto read = reader.read(options, [&](const recording::MessageView& m) {
-    Message message;
-    if (runtime::decode<Message>({m.data.begin(), m.data.end()}, message)) {
-      messages.push_back(std::move(message));
-    }
-    return true;
-  });
-  if (!read) return read.error();
-  return messages;
-}
 
 /// What a planning stage got and made of it, when it was recorded.
 template <typename Input>
@@ -45,22 +23,20 @@ Result<Recorded<Input>> load_recorded(const std::string& file, const char* input
                                       const char* output_topic) {
   auto reader = recording::Reader::open(file);
   if (!reader) return reader.error();
-  auto inputs = recorded_messages<Input>(*reader, input_topic);
+  auto inputs = recording::messages_of<Input>(*reader, input_topic);
   if (!inputs) return inputs.error();
-  const auto outputs = recorded_messages<Output>(*reader, output_topic);
-  if (!outputs) return outputs.error();
-  const auto maps = recorded_messages<goshawk_msgs::msg::VoxelGrid>(*reader, "map/voxels");
+  const auto maps = recording::messages_of<goshawk_msgs::msg::VoxelGrid>(*reader, "map/voxels");
   if (!maps) return maps.error();
-  if (inputs->empty() || maps->empty()) {
-    return fail(ErrorCode::invalid_input, file + " has no messages on " +
-                                              (maps->empty() ? "map/voxels" : input_topic) +
-                                              ": record a flight with it");
-  }
   auto grid = conversions::from_msg(maps->back());
   if (!grid) return grid.error();
   Recorded<Input> recorded;
   recorded.inputs = *std::move(inputs);
-  for (const auto& output : *outputs) recorded.solved.insert(output.request().id());
+  const auto outputs = recording::messages_of<Output>(*reader, output_topic);
+  if (outputs) {
+    for (const auto& output : *outputs) recorded.solved.insert(output.request().id());
+  } else if (outputs.code() != ErrorCode::invalid_input) {  // which says that nothing was solved
+    return outputs.error();
+  }
   recorded.grid = std::make_shared<VoxelGrid>(*std::move(grid));
   return recorded;
 }

@@ -1,11 +1,14 @@
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "goshawk/conversions/grid.hpp"
 #include "goshawk/conversions/plan.hpp"
 #include "goshawk/conversions/vehicle.hpp"
 #include "goshawk/map_server/live_map.hpp"
+#include "goshawk/recording/sink.hpp"
+#include "goshawk/recording/writer.hpp"
 #include "goshawk/runtime/stage_reporter.hpp"
 #include "octomap_msgs.h"
 #include "sensor_msgs.h"
@@ -21,7 +24,7 @@ using testing::Contains;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-enum class MapFault { none, believes_all, not_grown, broken_chain, only_once };
+enum class MapFault { none, believes_all, not_grown, broken_chain, only_once, silent };
 
 map_server::LiveMap empty_map() {
   return *map_server::LiveMap::unknown_space({Vec3(0, 0, 0), Vec3(6, 6, 3)}, 0.2,
@@ -74,7 +77,10 @@ class ForeignMap {
   }
 
   void on_cloud(const PointCloud2& m) {
-    if (auto status = check(m); !status) return reporter_.fault(status.error());
+    if (auto status = check(m); !status) {
+      if (fault_ != MapFault::silent) reporter_.fault(status.error());
+      return;
+    }
     std::vector<Vec3> points;
     for (std::size_t at = 0; at + 12 <= m.data().size(); at += 12) {
       float p[3];
@@ -135,6 +141,69 @@ TEST(ConformMapServer, ForeignOnesPassOrFailAtTheRightItems) {
   const auto report =
       examine<ForeignMap>({.stage = "map_server", .timeout_s = 0.05}, MapFault::only_once);
   EXPECT_THAT(failed(report), Contains("has a map for who comes"));
+}
+
+PointCloud2 cloud(const Vec3& at, const std::string& first_field) {
+  PointCloud2 m;
+  m.header(conversions::make_header(1));
+  for (std::uint32_t axis = 0; axis < 3; ++axis) {
+    sensor_msgs::msg::PointField field;
+    field.name(axis == 0 ? first_field : std::string(1, "xyz"[axis]));
+    field.offset(4 * axis);
+    field.datatype(7);  // float32
+    field.count(1);
+    m.fields().push_back(field);
+  }
+  const float p[] = {float(at.x()), float(at.y()), float(at.z())};
+  m.data().resize(sizeof p);
+  std::memcpy(m.data().data(), p, sizeof p);
+  m.height(1);
+  m.width(1);
+  m.point_step(sizeof p);
+  m.row_step(sizeof p);
+  return m;
+}
+
+/// Three clouds on /uav1/cloud_in, of which the second lacks x, and another topic's message.
+std::string record_clouds(const std::string& file) {
+  auto writer = *recording::Writer::create(*recording::create_file(file, true));
+  const auto schema = writer.add_schema("sensor_msgs/msg/PointCloud2", "", "");
+  const auto clouds = writer.add_channel({0, schema, "/uav1/cloud_in", "cdr", {}});
+  const auto other = writer.add_channel({0, 0, "/other", "cdr", {}});
+  const unsigned char nothing[] = {0, 1, 0, 0};
+  EXPECT_TRUE(writer.write({other, 0, 1, 1, nothing}));
+  std::uint32_t number = 0;
+  for (const char* field : {"x", "u", "x"}) {
+    const auto bytes = runtime::encode(cloud(Vec3(1.0 + number, 2.0, 1.0), field));
+    EXPECT_TRUE(writer.write({clouds, number, number + 2, number + 2, bytes}));
+    ++number;
+  }
+  EXPECT_TRUE(writer.close());
+  return file;
+}
+
+TEST(ConformMapServer, RecordedCloudsMustChangeTheMapOrBeRefused) {
+  const std::string file = record_clouds(testing::TempDir() + "conform_clouds.mcap");
+  const std::string item = "answers every recorded cloud";
+  const auto good = examine<ForeignMap>({.stage = "map_server", .input = file}, MapFault::none);
+  EXPECT_THAT(failed(good), IsEmpty());
+  EXPECT_NE(std::ranges::find(good.items, item, &conformance::Item::name), good.items.end());
+  // Each cloud that is passed over in silence is waited for.
+  const auto silent = examine<ForeignMap>({.stage = "map_server", .input = file, .timeout_s = 0.4},
+                                          MapFault::silent);
+  EXPECT_THAT(failed(silent), Contains(item));
+}
+
+TEST(ConformMapServer, ARecordingWithoutCloudsIsASentence) {
+  const auto context = join(runtime::hold_private_domain());
+  const std::string file = testing::TempDir() + "conform_nothing.mcap";
+  EXPECT_TRUE(recording::Writer::create(*recording::create_file(file, true))->close());
+  for (const std::string stage : {"map_server", "tracker", "path_search"}) {
+    const auto report = conformance::conform(*context, {.stage = stage, .input = file});
+    ASSERT_FALSE(report);
+    EXPECT_EQ(report.code(), ErrorCode::invalid_input);
+    EXPECT_THAT(report.error().message, testing::HasSubstr("no messages on"));
+  }
 }
 
 }  // namespace

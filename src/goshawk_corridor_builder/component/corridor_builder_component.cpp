@@ -29,19 +29,28 @@ class CorridorBuilderComponent : public Component {
  public:
   explicit CorridorBuilderComponent(Node& node)
       : node_(node),
-        builder_(make_builder(node.parameters<Config>())),
-        fallback_(make_builder(on_grown_grid(node.parameters<Config>()))),
+        config_(node.parameters<Config>([this](const Config& c) { return reconfigure(c); })),
+        builder_(make_builder(config_)),
+        fallback_(make_builder(on_grown_grid(config_))),
         reporter_(node, std::string(builder_.implementation())),
         publisher_(node.advertise<msg::Corridor>("corridor", Qos::reliable_last())),
         map_(node, reporter_) {
     node.subscribe<msg::Path>(
         "path", Qos::reliable_last(),
         [this](const msg::Path& m, const MessageInfo& info) { on_path(m, info); });
-    if (node.parameters<Config>().margin == "sphere") subscribe_raw();
+    if (config_.margin == "sphere") subscribe_raw();
     reporter_.ready("builds corridors with " + std::string(builder_.implementation()));
   }
 
  private:
+  // Which margin is kept, and with it which topics are read, holds from start to end.
+  Status reconfigure(const Config& config) {
+    if (auto status = builder_.reconfigure(config); !status) return status;
+    if (auto status = fallback_.reconfigure(on_grown_grid(config)); !status) return status;
+    reporter_.set_implementation(std::string(builder_.implementation()));
+    return success();
+  }
+
   void subscribe_raw() {
     node_.subscribe<msg::VoxelGrid>("map/voxels/raw", Qos::latched(),
                                     [this](const msg::VoxelGrid& m, const MessageInfo&) {
@@ -110,6 +119,7 @@ class CorridorBuilderComponent : public Component {
   }
 
   Node& node_;
+  const Config config_;  // as it was at start
   CorridorBuilder builder_;
   CorridorBuilder fallback_;   // margin grown_grid
   std::optional<RawMap> raw_;  // with margin sphere, once it has come

@@ -226,6 +226,13 @@ Result<CorridorBuilder> CorridorBuilder::create(const Config& config) {
   return CorridorBuilder(std::make_unique<Impl>(config));
 }
 
+Status CorridorBuilder::reconfigure(const Config& config) {
+  auto other = create(config);
+  if (!other) return other.error();
+  *this = *std::move(other);
+  return success();
+}
+
 CorridorBuilder::CorridorBuilder(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 CorridorBuilder::CorridorBuilder(CorridorBuilder&&) noexcept = default;
 CorridorBuilder& CorridorBuilder::operator=(CorridorBuilder&&) noexcept = default;

@@ -7,16 +7,16 @@ namespace goshawk::corridor_builder {
 namespace {
 
 using Word = BitGrid::Word;
-constexpr int kBits = BitGrid::kWordBits;
+constexpr int kWordBits = BitGrid::kWordBits;
 
 // Voxels x0 to x1 of a row as one word, the first in its lowest bit. @pre x1 - x0 <= 64
 Word gathered(const Word* row, int x0, int x1) {
-  const int w = x0 / kBits;
-  const int shift = x0 % kBits;
+  const int w = x0 / kWordBits;
+  const int shift = x0 % kWordBits;
   Word word = row[w] >> shift;
-  if (shift != 0 && (w + 1) * kBits < x1) word |= row[w + 1] << (kBits - shift);
+  if (shift != 0 && (w + 1) * kWordBits < x1) word |= row[w + 1] << (kWordBits - shift);
   const int count = x1 - x0;
-  return count < kBits ? word & ~(~Word{0} << count) : word;
+  return count < kWordBits ? word & ~(~Word{0} << count) : word;
 }
 
 struct Run {
@@ -27,9 +27,9 @@ struct Run {
 // The longest run of ones that holds a bit. @pre the bit is set
 Run run_around(Word word, int bit) {
   const Word zeros_below = ~word & ((Word{1} << bit) - 1);
-  const int begin = kBits - std::countl_zero(zeros_below);
+  const int begin = kWordBits - std::countl_zero(zeros_below);
   const int length = std::countr_one(word >> begin);
-  const Word ones = length < kBits ? (Word{1} << length) - 1 : ~Word{0};
+  const Word ones = length < kWordBits ? (Word{1} << length) - 1 : ~Word{0};
   return {begin, begin + length, ones << begin};
 }
 
@@ -70,7 +70,7 @@ void ObstacleMerger::collect(const BitGrid& occupied, const VoxelBox& region, In
                              double radius, BoxSet& boxes) {
   VoxelBox slab = region;
   for (; slab.lo.x < region.hi.x; slab.lo.x = slab.hi.x) {
-    slab.hi.x = std::min(slab.lo.x + kBits, region.hi.x);
+    slab.hi.x = std::min(slab.lo.x + kWordBits, region.hi.x);
     gather(occupied, slab);
     const Index3 offset = slab.lo - base;
     merge(Vec3(offset.x, offset.y, offset.z), radius, boxes);

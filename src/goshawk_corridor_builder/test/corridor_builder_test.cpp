@@ -384,5 +384,27 @@ TEST(CorridorBuilder, PolytopesAndOverlapsAreLargeWhereThereIsRoom) {
   EXPECT_GT(corridor->min_overlap_radius_m(), 0.3);
 }
 
+TEST(CorridorBuilder, ANewConfigBuildsAsOneThatBeganWithIt) {
+  const VoxelGrid grid = world_with_wall();
+  const std::vector<Vec3> path{{1.1, 1.1, 0.5}, {1.5, 1.1, 1.5}, {2.7, 1.1, 1.5}, {3.1, 1.1, 0.5}};
+  Config boxes;
+  boxes.generator = "box";
+  CorridorBuilder builder = builder_of({});
+  ASSERT_TRUE(builder.build(grid, path));
+  ASSERT_TRUE(builder.reconfigure(boxes));
+  EXPECT_EQ(builder.implementation(), "box");
+  const auto wanted = builder_of(boxes).build(grid, path), got = builder.build(grid, path);
+  ASSERT_TRUE(wanted && got);
+  ASSERT_EQ(got->polytopes.size(), wanted->polytopes.size());
+  for (std::size_t k = 0; k < got->polytopes.size(); ++k) {
+    EXPECT_EQ(got->polytopes[k].A, wanted->polytopes[k].A);
+    EXPECT_EQ(got->polytopes[k].b, wanted->polytopes[k].b);
+  }
+  Config bad;
+  bad.max_faces = 3;
+  EXPECT_EQ(builder.reconfigure(bad).code(), ErrorCode::invalid_parameter);
+  EXPECT_EQ(builder.implementation(), "box");
+}
+
 }  // namespace
 }  // namespace goshawk::corridor_builder

@@ -11,10 +11,10 @@ namespace {
 using runtime::EndpointInfo;
 using runtime::ParticipantInfo;
 
-using Names = std::map<std::string, std::string>;  // participant: who that is
+using Owners = std::map<std::string, std::string>;  // participant: who that is
 
-Names names_of(const std::vector<ParticipantInfo>& participants) {
-  Names names;
+Owners names_of(const std::vector<ParticipantInfo>& participants) {
+  Owners names;
   for (const auto& p : participants) {
     std::string& name = names[p.guid_prefix];
     for (const auto& node : p.nodes) name += (name.empty() ? "" : ", ") + node;
@@ -23,13 +23,13 @@ Names names_of(const std::vector<ParticipantInfo>& participants) {
   return names;
 }
 
-std::string who(const Names& names, const EndpointInfo& e) {
+std::string who(const Owners& names, const EndpointInfo& e) {
   const auto found = names.find(e.participant);
   return found == names.end() ? "an unnamed process" : found->second;
 }
 
 // A reader that asks for more than a writer offers gets nothing from it, and no error either.
-void check_pair(const Names& names, const EndpointInfo& writer, const EndpointInfo& reader,
+void check_pair(const Owners& names, const EndpointInfo& writer, const EndpointInfo& reader,
                 std::vector<Finding>& findings) {
   std::string asks;
   if (reader.reliable && !writer.reliable) asks = "reliable, but best effort is offered";
@@ -55,7 +55,7 @@ void check_types(const std::string& topic, const std::vector<EndpointInfo>& ends
                           ": give the topic one type, or one of them another name"});
 }
 
-void check_topic(const Names& names, const std::string& topic,
+void check_topic(const Owners& names, const std::string& topic,
                  const std::vector<EndpointInfo>& ends, std::vector<Finding>& findings) {
   const std::size_t before = findings.size();
   check_types(topic, ends, findings);
@@ -101,7 +101,7 @@ std::vector<Finding> check_topics(const std::vector<ParticipantInfo>& participan
   check_node_names(participants, findings);
   std::map<std::string, std::vector<EndpointInfo>> topics;
   for (const auto& e : endpoints) topics[e.topic].push_back(e);
-  const Names names = names_of(participants);
+  const Owners names = names_of(participants);
   for (const auto& [topic, ends] : topics) check_topic(names, topic, ends, findings);
   return findings;
 }

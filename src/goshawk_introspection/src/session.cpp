@@ -49,7 +49,7 @@ int say_nothing(const std::string& sentence) {
 
 int run_one(const std::string& name, const Verb& verb, std::vector<std::string> arguments) {
   CLI::App app(verb.summary, "goshawk " + name);
-  CommonOptions common;
+  CommonOptions common{.timeout_s = verb.timeout_s};
   app.add_flag("--json", common.json, "for programs: one JSON object a line");
   app.add_option("--timeout", common.timeout_s, "longest wait for something to be there [s]")
       ->check(CLI::Range(0.0, 86400.0))

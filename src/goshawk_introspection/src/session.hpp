@@ -30,6 +30,7 @@ struct Verb {
   std::string summary;
   /// Adds its own options to app. @return what to do once they are parsed
   std::function<std::function<int()>(CLI::App& app, CommonOptions& common)> prepare;
+  double timeout_s = 2.0;  // unless --timeout says otherwise
 };
 
 /// Parses and runs a command that is one verb. @param name behind "goshawk "
@@ -55,7 +56,7 @@ class Session {
  public:
   static Result<std::unique_ptr<Session>> open();
 
-  runtime::Context& context() { return *context_; }
+  runtime::Context& context() const { return *context_; }
   runtime::Node& node() { return *node_; }
 
   /// Waits until done() holds. @return whether it did, within timeout_s and without Ctrl-C

@@ -1,4 +1,8 @@
+#include <poll.h>
+#include <unistd.h>
+
 #include <iostream>
+#include <optional>
 
 #include "goshawk/introspection/codec.hpp"
 #include "goshawk/runtime/message_type.hpp"
@@ -16,6 +20,18 @@ struct PubOptions {
   int count = 0;  // 0: until Ctrl-C
   double rate_hz = 1.0;
 };
+
+int say_published(const PubOptions& options, const CommonOptions& common, int published,
+                  int subscribers, bool arrived) {
+  if (common.json) {
+    std::cout << to_line({{"topic", options.topic},
+                          {"type", options.type},
+                          {"published", published},
+                          {"subscribers", subscribers}})
+              << std::endl;
+  }
+  return arrived ? 0 : say_nothing("a subscriber did not confirm the last message");
+}
 
 // @return exit status
 int publish_all(Session& session, const runtime::RawPublisher& publisher,
@@ -42,15 +58,70 @@ int publish_all(Session& session, const runtime::RawPublisher& publisher,
   }
   // What is on its way must arrive before the writer goes.
   const bool arrived = publisher.wait_acknowledged(std::max(1.0, common.timeout_s));
-  if (common.json) {
-    std::cout << to_line({{"topic", options.topic},
-                          {"type", options.type},
-                          {"published", published},
-                          {"subscribers", subscribers}})
-              << std::endl;
+  const int status = say_published(options, common, published, subscribers, arrived);
+  return failed ? kNothing : status;
+}
+
+/// Lines of standard input.
+class Lines {
+ public:
+  /// @return the next one; none where the input ended, or Ctrl-C did
+  std::optional<std::string> next() {
+    for (;;) {
+      if (const auto end = text_.find('\n'); end != std::string::npos) return cut(end);
+      if (Interruptible::interrupted()) return {};
+      pollfd input{STDIN_FILENO, POLLIN, 0};
+      if (poll(&input, 1, 100) <= 0) continue;
+      char buffer[1 << 16];
+      const auto got = read(STDIN_FILENO, buffer, sizeof buffer);
+      if (got > 0) {
+        text_.append(buffer, std::size_t(got));
+      } else if (got == 0 || errno != EINTR) {
+        if (text_.empty()) return {};
+        return cut(text_.size());  // the last one needs no end
+      }
+    }
   }
-  if (failed) return kNothing;
-  if (!arrived) return say_nothing("a subscriber did not confirm the last message");
+
+ private:
+  std::string cut(std::size_t end) {
+    std::string line = text_.substr(0, end);
+    text_.erase(0, end + 1);
+    return line;
+  }
+  std::string text_;
+};
+
+Result<std::vector<unsigned char>> encoded(const Type& type, const std::string& message) {
+  auto json = parse_json_or_yaml(message);
+  if (!json) return json.error();
+  return json_to_cdr(type, *json);
+}
+
+/// A message a line, each once the one before has arrived. @return exit status
+int publish_lines(Session& session, const runtime::RawPublisher& publisher, const Type& type,
+                  const PubOptions& options, const CommonOptions& common) {
+  Lines lines;
+  int published = 0;
+  while (const auto line = lines.next()) {
+    if (line->find_first_not_of(" \t\r") == std::string::npos) continue;
+    const auto bytes = encoded(type, *line);
+    if (!bytes) return say_wrong_call(bytes.error().message);
+    if (publisher.matched() == 0) {
+      if (!session.wait_for(common.timeout_s, [&] { return publisher.matched() > 0; })) {
+        if (Interruptible::interrupted()) break;
+        return session.say_no_reader(options.topic, options.type);
+      }
+      session.settle(common.timeout_s, [&] { return publisher.matched(); });
+    }
+    const int subscribers = publisher.matched();
+    if (auto status = publisher.publish_raw(&*bytes); !status) {
+      return say_nothing(status.error().message);
+    }
+    const bool arrived = publisher.wait_acknowledged(std::max(1.0, common.timeout_s));
+    const int status = say_published(options, common, ++published, subscribers, arrived);
+    if (status != 0) return status;
+  }
   return 0;
 }
 
@@ -60,9 +131,8 @@ int pub(const CommonOptions& common, PubOptions options) {
   if (!name) return say_wrong_call(name.error().message);
   auto type = find_type(options.type);
   if (!type) return say_wrong_call(type.error().message);
-  auto json = parse_json_or_yaml(options.message);
-  if (!json) return say_wrong_call(json.error().message);
-  auto bytes = json_to_cdr(**type, *json);
+  const bool from_input = options.message == "-";
+  const auto bytes = encoded(**type, from_input ? "{}" : options.message);
   if (!bytes) return say_wrong_call(bytes.error().message);
 
   auto session = Session::open();
@@ -72,6 +142,7 @@ int pub(const CommonOptions& common, PubOptions options) {
   // Reliable and latched matches every reader, whatever it asks for.
   const auto raw = runtime::raw_message_type(runtime::wire_type_name(options.type));
   const auto publisher = (*session)->node().advertise_raw(*name, raw, runtime::Qos::latched(1));
+  if (from_input) return publish_lines(**session, publisher, **type, options, common);
   const bool heard =
       (*session)->wait_for(common.timeout_s, [&] { return publisher.matched() > 0; });
   if (Interruptible::interrupted()) return 0;
@@ -93,7 +164,8 @@ Verb topic_pub_verb() {
             app.add_option("topic", options->topic, "its name")->required();
             app.add_option("type", options->type, "as goshawk_msgs/msg/Path")->required();
             app.add_option("message", options->message,
-                           "JSON or YAML; fields left out are zero or empty");
+                           "JSON or YAML; fields left out are zero or empty. -: a message a line, "
+                           "from standard input");
             auto* once = app.add_flag("--once,-1", options->once, "once, then end");
             app.add_option("-n,--times", options->count, "that many times, then end")
                 ->check(CLI::Range(1, 1'000'000'000))

@@ -1,20 +1,14 @@
 // The verbs as a process of their own against nodes in this process: real DDS on loopback, in a
 // domain that the process id picks.
 
-#include <fcntl.h>
 #include <gmock/gmock.h>
-#include <poll.h>
-#include <signal.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "child.hpp"
 #include "goshawk/runtime/node.hpp"
-#include "goshawk/runtime/private_domain.hpp"
 #include "goshawk_msgs.h"
 #include "std_msgs.h"
 
@@ -27,99 +21,13 @@ using goshawk::runtime::Qos;
 using testing::HasSubstr;
 using testing::StartsWith;
 using Json = nlohmann::json;
-using Steady = std::chrono::steady_clock;
-
-int domain() {
-  static const int held = goshawk::runtime::hold_private_domain();
-  return held;
-}
-
-struct Outcome {
-  int status = -1;  // exit status; -signal where one ended it
-  std::string out;
-  std::string err;
-};
-
-double seconds_since(Steady::time_point begin) {
-  return std::chrono::duration<double>(Steady::now() - begin).count();
-}
-
-/// A child whose output is collected; ends it after `most_s`, so that no test hangs.
-class Child {
- public:
-  explicit Child(std::vector<std::string> arguments, int in_domain = domain()) {
-    setenv("ROS_DOMAIN_ID", std::to_string(in_domain).c_str(), 1);
-    arguments.insert(arguments.begin(), INTROSPECTION_CLI);
-    std::vector<char*> argv;
-    for (auto& argument : arguments) argv.push_back(argument.data());
-    argv.push_back(nullptr);
-    int out[2], err[2];
-    EXPECT_EQ(pipe2(out, O_CLOEXEC), 0);
-    EXPECT_EQ(pipe2(err, O_CLOEXEC), 0);
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_adddup2(&actions, out[1], 1);
-    posix_spawn_file_actions_adddup2(&actions, err[1], 2);
-    EXPECT_EQ(posix_spawn(&pid_, INTROSPECTION_CLI, &actions, nullptr, argv.data(), environ), 0);
-    posix_spawn_file_actions_destroy(&actions);
-    close(out[1]);
-    close(err[1]);
-    out_ = out[0];
-    err_ = err[0];
-  }
-  ~Child() {
-    close(out_);
-    close(err_);
-  }
-
-  /// Collects until something came on standard output, or the child ended.
-  void wait_for_output(double most_s = 60.0) {
-    const auto begin = Steady::now();
-    while (outcome_.out.empty() && open_ > 0 && seconds_since(begin) < most_s) collect(0.1);
-  }
-  void interrupt() { kill(pid_, SIGINT); }
-  Outcome finish(double most_s = 60.0) {
-    const auto begin = Steady::now();
-    while (open_ > 0 && seconds_since(begin) < most_s) collect(0.1);
-    if (open_ > 0) {
-      ADD_FAILURE() << "still running after " << most_s << " s";
-      kill(pid_, SIGKILL);
-    }
-    int status = 0;
-    waitpid(pid_, &status, 0);
-    outcome_.status = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
-    return outcome_;
-  }
-
- private:
-  void collect(double timeout_s) {
-    pollfd fds[2] = {{out_, POLLIN, 0}, {err_, POLLIN, 0}};
-    if (poll(fds, 2, int(timeout_s * 1000)) <= 0) return;
-    for (int i = 0; i < 2; ++i) {
-      if (fds[i].revents == 0) continue;
-      char buffer[4096];
-      const auto n = read(fds[i].fd, buffer, sizeof buffer);
-      int& fd = i == 0 ? out_ : err_;
-      if (n > 0) {
-        (i == 0 ? outcome_.out : outcome_.err).append(buffer, std::size_t(n));
-      } else {
-        close(fd);
-        fd = -1;
-        --open_;
-      }
-    }
-  }
-
-  pid_t pid_ = 0;
-  int out_ = -1;
-  int err_ = -1;
-  int open_ = 2;
-  Outcome outcome_;
-};
-
-Outcome run(std::vector<std::string> arguments, int in_domain = domain()) {
-  return Child(std::move(arguments), in_domain).finish();
-}
+using introspection_test::Child;
+using introspection_test::domain;
+using introspection_test::find;
+using introspection_test::Outcome;
+using introspection_test::run;
+using introspection_test::seconds_since;
+using introspection_test::Steady;
 
 /// A domain in which a planner publishes a path every 20 ms, a map is latched, and a goal is read.
 class Verbs : public testing::Test {
@@ -177,11 +85,11 @@ class Verbs : public testing::Test {
 };
 
 TEST_F(Verbs, ListsTopicsWithTypes) {
-  EXPECT_EQ(run({"topic", "list"}).out, "/uav1/goal\n/uav1/map/voxels\n/uav1/path\n");
-  const auto typed = run({"topic", "list", "-t"});
+  EXPECT_EQ(find({"topic", "list"}).out, "/uav1/goal\n/uav1/map/voxels\n/uav1/path\n");
+  const auto typed = find({"topic", "list", "-t"});
   EXPECT_EQ(typed.status, 0) << typed.err;
   EXPECT_THAT(typed.out, HasSubstr("/uav1/path [goshawk_msgs/msg/Path]\n"));
-  const Json json = Json::parse(run({"topic", "list", "--json"}).out);
+  const Json json = Json::parse(find({"topic", "list", "--json"}).out);
   EXPECT_EQ(json["domain"], domain());
   ASSERT_EQ(json["topics"].size(), 3u);
   EXPECT_EQ(json["topics"][2], Json::parse(R"({"name": "/uav1/path", "publishers": 1,
@@ -189,44 +97,44 @@ TEST_F(Verbs, ListsTopicsWithTypes) {
 }
 
 TEST_F(Verbs, TellsWhoWritesATopic) {
-  const Json json = Json::parse(run({"topic", "info", "uav1/map/voxels", "--json"}).out);
+  const Json json = Json::parse(find({"topic", "info", "uav1/map/voxels", "--json"}).out);
   ASSERT_EQ(json["publishers"].size(), 1u);
   EXPECT_EQ(json["publishers"][0]["nodes"], Json({"/uav1/planner"}));
   EXPECT_EQ(json["publishers"][0]["durability"], "transient_local");
   EXPECT_EQ(json["publishers"][0]["reliability"], "reliable");
-  EXPECT_THAT(run({"topic", "info", "/uav1/path"}).out,
+  EXPECT_THAT(find({"topic", "info", "/uav1/path"}).out,
               HasSubstr("Publishers: 1\n  /uav1/planner  (reliable, volatile)"));
 }
 
 TEST_F(Verbs, EchoesMessages) {
-  const auto yaml = run({"topic", "echo", "/uav1/path", "--once"});
+  const auto yaml = find({"topic", "echo", "/uav1/path", "--once"});
   EXPECT_EQ(yaml.status, 0) << yaml.err;
   EXPECT_THAT(yaml.out, StartsWith("header:\n  stamp:\n    sec: "));
   EXPECT_THAT(yaml.out,
               HasSubstr("\nwaypoints:\n  - x: 0.0\n    y: 0.0\n    z: 0.0\n  - x: 1.5\n"));
   EXPECT_THAT(yaml.out, HasSubstr("\n---\n"));
-  const auto lines = run({"topic", "echo", "/uav1/path", "-n", "3", "--json"});
+  const auto lines = find({"topic", "echo", "/uav1/path", "-n", "3", "--json"});
   EXPECT_EQ(std::ranges::count(lines.out, '\n'), 3);
   const Json first = Json::parse(lines.out.substr(0, lines.out.find('\n')));
   EXPECT_EQ(first["waypoints"][1]["x"], 1.5);
 }
 
 TEST_F(Verbs, EchoesTheLatchedMapToALateComer) {
-  const auto map = run({"topic", "echo", "/uav1/map/voxels", "--once", "--json", "--no-arr"});
+  const auto map = find({"topic", "echo", "/uav1/map/voxels", "--once", "--json", "--no-arr"});
   EXPECT_EQ(map.status, 0) << map.err;
   EXPECT_EQ(Json::parse(map.out)["occupied"], "<100 elements>");
 }
 
 TEST_F(Verbs, MeasuresRateDelayAndBandwidth) {
-  const auto hz = run({"topic", "hz", "/uav1/path", "-n", "20", "--json"});
+  const auto hz = find({"topic", "hz", "/uav1/path", "-n", "20", "--json"});
   EXPECT_EQ(hz.status, 0) << hz.err;
   const Json rate = Json::parse(hz.out.substr(0, hz.out.find('\n')));
   EXPECT_GT(rate["rate_hz"], 0.0);
   EXPECT_LE(rate["min_s"], rate["max_s"]);
-  const auto delay = run({"topic", "delay", "/uav1/path", "-n", "5", "--json"});
+  const auto delay = find({"topic", "delay", "/uav1/path", "-n", "5", "--json"});
   EXPECT_EQ(delay.status, 0) << delay.err;
   EXPECT_GE(Json::parse(delay.out.substr(0, delay.out.find('\n')))["min_s"], 0.0);
-  const auto bw = run({"topic", "bw", "/uav1/path", "-n", "10", "--json"});
+  const auto bw = find({"topic", "bw", "/uav1/path", "-n", "10", "--json"});
   EXPECT_EQ(bw.status, 0) << bw.err;
   const Json bytes = Json::parse(bw.out.substr(0, bw.out.find('\n')));
   EXPECT_GT(bytes["bytes_per_s"], 0.0);
@@ -241,33 +149,62 @@ TEST_F(Verbs, DelayNeedsAHeader) {
 
 TEST_F(Verbs, PublishesJsonAndYaml) {
   const auto once =
-      run({"topic", "pub", "/uav1/goal", "std_msgs/String", "{\"data\": \"a\"}", "--once"});
+      find({"topic", "pub", "/uav1/goal", "std_msgs/String", "{\"data\": \"a\"}", "--once"});
   EXPECT_EQ(once.status, 0) << once.err;
   EXPECT_EQ(goals(), std::vector<std::string>{"a"});
-  const auto thrice = run({"topic", "pub", "/uav1/goal", "std_msgs/msg/String", "data: 'b'", "-r",
-                           "100", "-n", "3", "--json"});
+  const auto thrice = find({"topic", "pub", "/uav1/goal", "std_msgs/msg/String", "data: 'b'", "-r",
+                            "100", "-n", "3", "--json"});
   EXPECT_EQ(thrice.status, 0) << thrice.err;
   EXPECT_EQ(goals(), (std::vector<std::string>{"a", "b", "b", "b"}));
   EXPECT_EQ(Json::parse(thrice.out)["published"], 3);
 }
 
+TEST_F(Verbs, PublishesAMessageALineFromStandardInput) {
+  Child child({"topic", "pub", "/uav1/goal", "std_msgs/String", "-", "--json", "--timeout", "30"},
+              domain(), "{\"data\": \"a\"}\n\ndata: b\n{data: 'the last line needs no end'}");
+  const auto all = child.finish();
+  EXPECT_EQ(all.status, 0) << all.err;
+  EXPECT_EQ(goals(), (std::vector<std::string>{"a", "b", "the last line needs no end"}));
+  EXPECT_EQ(std::ranges::count(all.out, '\n'), 3);
+  EXPECT_EQ(Json::parse(all.out.substr(all.out.find('\n', all.out.find('\n') + 1)))["published"],
+            3);
+  Child wrong({"topic", "pub", "/uav1/goal", "std_msgs/String", "-", "--timeout", "30"}, domain(),
+              "{data: c}\n{dat: d}\n{data: e}\n");
+  const auto refused = wrong.finish();
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err, HasSubstr("did you mean data?"));
+  EXPECT_EQ(goals().size(), 4u) << "those before the wrong one, and none behind it";
+}
+
 TEST_F(Verbs, ListsNodes) {
-  const auto list = run({"node", "list"});
+  const auto list = find({"node", "list"});
   EXPECT_EQ(list.status, 0) << list.err;
   EXPECT_EQ(list.out, "/uav1/planner\n");
-  const Json json = Json::parse(run({"node", "list", "--json"}).out);
+  const Json json = Json::parse(find({"node", "list", "--json"}).out);
   EXPECT_EQ(json["nodes"][0]["name"], "/uav1/planner");
   EXPECT_EQ(json["nodes"][0]["process"], "goshawk_" + std::to_string(getpid()));
 }
 
+/// What is not there costs the whole timeout: a short one, and a longer one where the machine had
+/// not found the others by then.
+Outcome miss(const std::vector<std::string>& arguments) {
+  Outcome outcome;
+  for (const char* timeout_s : {"1", "4", "16"}) {
+    auto patient = arguments;
+    patient.insert(patient.end(), {"--timeout", timeout_s});
+    outcome = run(patient);
+    if (outcome.status == 2) break;
+  }
+  return outcome;
+}
+
 TEST_F(Verbs, NameTheNearestTopic) {
   for (const char* verb : {"info", "hz"}) {
-    const auto outcome = run({"topic", verb, "/uav1/pth", "--timeout", "1.5"});
+    const auto outcome = miss({"topic", verb, "/uav1/pth"});
     EXPECT_EQ(outcome.status, 2) << verb;
     EXPECT_THAT(outcome.err, HasSubstr("did you mean /uav1/path?")) << verb;
   }
-  const auto pub =
-      run({"topic", "pub", "/uav1/gaol", "std_msgs/String", "{}", "--once", "--timeout", "1.5"});
+  const auto pub = miss({"topic", "pub", "/uav1/gaol", "std_msgs/String", "{}", "--once"});
   EXPECT_EQ(pub.status, 2);
   EXPECT_THAT(pub.err, HasSubstr("did you mean /uav1/goal?"));
 }

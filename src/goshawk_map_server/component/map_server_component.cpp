@@ -49,7 +49,10 @@ class MapServerComponent : public Component {
  public:
   explicit MapServerComponent(Node& node)
       : node_(node),
-        config_(node.parameters<Config>()),
+        config_(node.parameters<Config>([this](const Config& c) {
+          config_ = c;  // max_range_m of the scans to come
+          return success();
+        })),
         map_(make_map(config_)),
         reporter_(node, "octomap"),
         voxels_(node.advertise<msg::VoxelGrid>("map/voxels", Qos::latched())),

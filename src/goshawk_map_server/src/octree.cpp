@@ -74,7 +74,7 @@ Status write_file(const std::string& path, const std::string& head, const std::s
                                         "has space left");
 }
 
-Status check_ending(const std::string& path) {
+Status check_tree_ending(const std::string& path) {
   const std::string ending = lower_case_ending(path);
   if (ending == "bt" || ending == "ot") return success();
   return fail(ErrorCode::map_unreadable,
@@ -129,7 +129,7 @@ Result<OcTreePtr> make_octree(const GridGeometry& geometry, const BitGrid& occup
 }
 
 Status save_octree(const octomap::OcTree& tree, const std::string& path) {
-  if (auto status = check_ending(path); !status) return status;
+  if (auto status = check_tree_ending(path); !status) return status;
   if (lower_case_ending(path) == "bt") {
     return write_file(path, header("binary file", tree.size(), tree.getResolution()),
                       binary_payload(tree));
@@ -141,7 +141,7 @@ Status save_octree(const octomap::OcTree& tree, const std::string& path) {
 
 Status save_voxels(const GridGeometry& geometry, const BitGrid& occupied, const BitGrid& known,
                    const std::string& path) {
-  if (auto status = check_ending(path); !status) return status;
+  if (auto status = check_tree_ending(path); !status) return status;
   if (lower_case_ending(path) == "bt") {  // needs no tree
     const auto payload = encode(geometry, occupied, known);
     if (!payload) return payload.error();

@@ -24,7 +24,7 @@ class NavigatorComponent : public Component {
  public:
   explicit NavigatorComponent(Node& node)
       : node_(node),
-        config_(node.parameters<Config>()),
+        config_(node.parameters<Config>([this](const Config& c) { return reconfigure(c); })),
         navigator_(config_, first_id(node.now_ns())),
         reporter_(node, "navigator"),
         requests_(node.advertise<msg::PlanRequest>("plan_request", Qos::reliable_last())),
@@ -45,6 +45,12 @@ class NavigatorComponent : public Component {
   }
 
  private:
+  Status reconfigure(const Config& config) {
+    if (auto status = navigator_.reconfigure(config); !status) return status;
+    config_ = config;
+    return success();
+  }
+
   void subscribe() {
     node_.subscribe<geometry_msgs::msg::PoseStamped>(
         "goal_pose", Qos::reliable_last(),

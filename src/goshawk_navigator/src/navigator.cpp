@@ -42,6 +42,16 @@ std::string_view to_string(State state) {
 Navigator::Navigator(const Config& config, std::uint64_t first_id)
     : config_(config), next_id_(first_id), lead_s_(config.replan_lead_s) {}
 
+Status Navigator::reconfigure(const Config& config) {
+  ParameterFaults faults;
+  describe(config, faults);
+  if (auto status = faults.status(); !status) return status;
+  if (auto status = check_change(config_, config); !status) return status;
+  if (config.replan_lead_s != config_.replan_lead_s) lead_s_ = config.replan_lead_s;
+  config_ = config;
+  return success();
+}
+
 Status Navigator::on_goal(const Vec3& goal_map, double yaw_rad, std::int64_t now_ns) {
   if (!goal_map.allFinite() || !std::isfinite(yaw_rad)) {
     return fail(ErrorCode::invalid_input, "goal " + to_text(goal_map) + " with yaw " +

@@ -304,5 +304,28 @@ TEST(Navigator, SameEventsSameOrders) {
   EXPECT_EQ(run(), run());
 }
 
+TEST(Navigator, LimitsOfTimeChangeBetweenTwoRequestsAndAllElseIsRefused) {
+  Harness h;
+  h.goal(kGoal);
+  Config config;
+  config.plan_timeout_s = 3.0;
+  config.max_attempts = 2;
+  ASSERT_TRUE(h.navigator.reconfigure(config));
+  h.pass(2.0);  // the open request has longer now
+  EXPECT_EQ(h.plans.size(), 1u);
+  h.pass(1.5);
+  ASSERT_EQ(h.plans.size(), 2u);
+  EXPECT_EQ(h.plans[1].deadline_s, 3.0);
+  h.pass(3.5);
+  EXPECT_EQ(h.last().state, State::failed);
+
+  Config bad = config;
+  bad.max_attempts = 0;
+  EXPECT_THAT(h.navigator.reconfigure(bad).error().message, HasSubstr("max_attempts"));
+  bad = config;
+  bad.rest_speed_m_s = 1.0;
+  EXPECT_THAT(h.navigator.reconfigure(bad).error().message, HasSubstr("rest_speed_m_s cannot"));
+}
+
 }  // namespace
 }  // namespace goshawk::navigator

@@ -21,7 +21,7 @@ class PathSearchComponent : public Component {
  public:
   explicit PathSearchComponent(Node& node)
       : node_(node),
-        config_(node.parameters<Config>()),
+        config_(node.parameters<Config>([this](const Config& c) { return reconfigure(c); })),
         search_(make_search(config_)),
         reporter_(node, config_.planner),
         publisher_(node.advertise<msg::Path>("path", Qos::reliable_last())),
@@ -34,6 +34,13 @@ class PathSearchComponent : public Component {
   }
 
  private:
+  Status reconfigure(const Config& config) {
+    if (auto status = search_.reconfigure(config); !status) return status;
+    config_ = config;
+    reporter_.set_implementation(std::string(search_.planner_name()));
+    return success();
+  }
+
   void on_request(const msg::PlanRequest& m, const MessageInfo& info) {
     Timing timing{.wire_ns = wire_time_ns(m.header(), info)};
     const auto request = open_request(m, node_.now_ns(), reporter_, timing);

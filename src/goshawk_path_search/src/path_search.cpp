@@ -60,7 +60,17 @@ Result<PathSearch> PathSearch::create(const Config& config) {
   return PathSearch(config, std::move(planner).value(), *rule, *pruning, *box);
 }
 
+Status PathSearch::reconfigure(const Config& config) {
+  auto other = create(config);
+  if (!other) return other.error();
+  if (given_map_ != nullptr) other->set_map(given_map_);
+  if (map_ != nullptr && other->map_ == nullptr) return other->map_error_;
+  *this = *std::move(other);
+  return success();
+}
+
 void PathSearch::set_map(std::shared_ptr<const VoxelGrid> map) {
+  given_map_ = map;
   map_.reset();
   if (!map) {
     map_error_ = fail(ErrorCode::no_map, "no map: wait for one, or load one, before planning");

@@ -132,11 +132,55 @@ TEST(PathSearch, KeepsRawMovesThatTouchCornersUnderSqueeze) {
   EXPECT_EQ(path->waypoints_map.size(), 2U);
 }
 
+TEST(PathSearch, ANewConfigAnswersAsOneThatBeganWithIt) {
+  Random random(77);
+  Config other;
+  other.planner = "astar";
+  other.pruning = "none";
+  other.clearance_m = 0.5;
+  PathSearch fresh = stage(other);
+  PathSearch changed = stage();
+  EXPECT_TRUE(changed.reconfigure(other)) << "before any map";
+  ASSERT_TRUE(changed.reconfigure(Config{}));
+  for (int n = 0; n < 30; ++n) {
+    const auto grid = grid_of(reference::any_map(random));
+    const Vec3 start = inside(*grid, reference::free_voxel(grid->occupied, random), random);
+    const Vec3 goal = inside(*grid, reference::free_voxel(grid->occupied, random), random);
+    fresh.set_map(grid);
+    changed.set_map(grid);
+    (void)changed.plan(start, goal);
+    ASSERT_TRUE(changed.reconfigure(other));
+    const auto wanted = fresh.plan(start, goal), got = changed.plan(start, goal);
+    ASSERT_EQ(got.code(), wanted.code());
+    if (got) {
+      EXPECT_EQ(got->waypoints_map, wanted->waypoints_map);
+    }
+    ASSERT_TRUE(changed.reconfigure(Config{}));
+  }
+}
+
+TEST(PathSearch, AConfigThatTheMapCannotServeIsRefusedAndTheOldOneStays) {
+  Random random(78);
+  PathSearch search = stage();
+  const auto grid = grid_of(reference::any_map(random));
+  search.set_map(grid);
+  Config bad;
+  bad.search_box = "1000,1000,1000,1001,1001,1001";
+  EXPECT_FALSE(search.reconfigure(bad));
+  bad.search_box = "not a box";
+  EXPECT_FALSE(search.reconfigure(bad));
+  bad = Config{};
+  bad.z_weight = -1.0;
+  EXPECT_EQ(search.reconfigure(bad).code(), ErrorCode::invalid_parameter);
+  const Vec3 start = inside(*grid, reference::free_voxel(grid->occupied, random), random);
+  EXPECT_TRUE(search.plan(start, start));
+}
+
 TEST(Config, OffersOnlyWordsThatItTakes) {
   Config config;
   int words_seen = 0;
   describe(config, [&](const char*, auto& value, const char*, const char*, const auto& domain) {
-    if constexpr (std::is_same_v<std::decay_t<decltype(domain)>, OneOf>) {
+    if constexpr (std::is_convertible_v<decltype(domain), const OneOf&>) {
       EXPECT_EQ(std::count(domain.choices.begin(), domain.choices.end(), value), 1);
       for (const std::string& word : domain.choices) {
         const std::string before = std::exchange(value, word);

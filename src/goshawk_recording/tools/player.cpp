@@ -13,6 +13,10 @@ namespace {
 constexpr double kSlice_s = 0.05;    // how often a wait looks for Ctrl-C
 constexpr double kSettled_s = 0.7;   // nobody new for this long: all readers are found
 constexpr double kClockPeriod_s = 0.01;
+constexpr double kWord_s = 3.0;  // waiting silently for longer would puzzle
+// A recorder takes topic by topic what has come: within this time it may be in another order.
+constexpr std::uint64_t kDisorder_ns = 2'000'000'000;
+constexpr std::size_t kFragments_bytes = 60'000;  // larger messages arrive in parts
 
 std::int64_t steady_ns() {
   return std::chrono::steady_clock::now().time_since_epoch().count();
@@ -39,8 +43,10 @@ Player::Player(runtime::Node& node, Reader& reader, const std::set<std::uint16_t
     const auto known = introspection::find_type(type);
     tracks_[id] = {node.advertise_raw(options_.prefix + channel.topic,
                                       runtime::raw_message_type(runtime::wire_type_name(type)), qos),
-                   known ? *known : nullptr, qos.transient_local};
+                   known ? *known : nullptr, qos.transient_local, qos.reliable,
+                   turn_of(options_.prefix + channel.topic, type)};
   }
+  if (!options_.lock_step.empty()) turns_.emplace(node);
   if (options_.clock) {
     clock_ = node.advertise_raw("/clock",
                                 runtime::raw_message_type("rosgraph_msgs::msg::dds_::Clock_"),
@@ -49,15 +55,39 @@ Player::Player(runtime::Node& node, Reader& reader, const std::set<std::uint16_t
   }
 }
 
+int Player::matched() const {
+  int sum = 0;
+  for (const auto& [id, track] : tracks_) sum += track.publisher.matched();
+  return sum;
+}
+
 void Player::wait_for_readers() {
+  if (turns_) wait_for_turn_takers();
+  settle(options_.wait_s);
+}
+
+void Player::wait_for_turn_takers() {
+  const auto begin = steady_ns();
+  bool said = false;
+  for (const auto& [id, track] : tracks_) {
+    if (track.turn_of.empty()) continue;
+    while (!Interruptible::interrupted() && track.publisher.matched() == 0) {
+      if (!said && double(steady_ns() - begin) * 1e-9 > kWord_s) {
+        say("replay", "waits for " + track.turn_of + " to run with lock_step: true");
+        said = true;
+      }
+      node_.spin_some(kSlice_s);
+    }
+  }
+}
+
+void Player::settle(double longest_s) {
   const auto begin = steady_ns();
   auto changed = begin;
   int known = -1;
   const auto since = [](std::int64_t ns) { return double(steady_ns() - ns) * 1e-9; };
-  while (!Interruptible::interrupted() && since(begin) < options_.wait_s &&
-         since(changed) < kSettled_s) {
-    int now = 0;
-    for (const auto& [id, track] : tracks_) now += track.publisher.matched();
+  while (!Interruptible::interrupted() && since(begin) < longest_s && since(changed) < kSettled_s) {
+    const int now = matched();
     if (now != known) changed = steady_ns();
     known = now;
     node_.spin_some(kSlice_s);
@@ -65,6 +95,53 @@ void Player::wait_for_readers() {
 }
 
 Status Player::play() {
+  return turns_ ? play_in_lock_step() : play_in_time();
+}
+
+Status Player::play_in_lock_step() {
+  roll_.clear();
+  Status played = success();
+  const auto read = reader_.read({.channels = channels_}, [&](const MessageView& m) {
+    held_.emplace(m.publish_time_ns,
+                  Held{m.channel_id, m.log_time_ns, Bytes(m.data.begin(), m.data.end())});
+    if (m.log_time_ns > kDisorder_ns) played = play_held(m.log_time_ns - kDisorder_ns);
+    return played.ok() && !Interruptible::interrupted();
+  });
+  if (read && played) played = play_held(std::numeric_limits<std::uint64_t>::max());
+  held_.clear();
+  return played ? read : played;
+}
+
+// What came until then, in the order of publication.
+Status Player::play_held(std::uint64_t until_ns) {
+  while (!held_.empty() && held_.begin()->second.log_time_ns <= until_ns &&
+         !Interruptible::interrupted()) {
+    if (auto status = play_in_order(held_.begin()->second); !status) return status;
+    held_.erase(held_.begin());
+  }
+  return success();
+}
+
+Status Player::play_in_order(Held& held) {
+  Track& track = tracks_.at(held.channel);
+  if (track.turn_of.empty()) {
+    ++published_;
+    if (auto status = track.publisher.publish_raw(&held.data); !status) return status;
+    // Parts that were lost are sent again at some time: that must be before the next turn.
+    if (track.reliable && held.data.size() > kFragments_bytes) {
+      (void)track.publisher.wait_acknowledged(options_.wait_s);
+    }
+    return success();
+  }
+  if (auto status = turns_->give(track.publisher, held.data, track.turn_of); !status) return status;
+  // After the roll call everybody finds everybody, as in the flight.
+  if (roll_.insert(track.turn_of).second && roll_.size() == options_.lock_step.size()) {
+    settle(options_.wait_s);
+  }
+  return success();
+}
+
+Status Player::play_in_time() {
   from_ns_ = reader_.start_ns() + std::uint64_t(options_.start_offset_s * 1e9);
   if (auto status = publish_latched_before(from_ns_); !status) return status;
   begin_ns_ = steady_ns();

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "goshawk/recording/reader.hpp"
 #include "goshawk/runtime/node.hpp"
 #include "goshawk/introspection/schema.hpp"
+#include "turns.hpp"
 
 namespace goshawk::recording {
 
@@ -17,9 +19,11 @@ struct PlayerOptions {
   bool clock = false;           // publish /clock
   bool restamp = false;         // move stamps to now
   std::string prefix;           // before every topic
+  std::set<std::string> lock_step = {};  // full names of nodes that are given their recorded turns
 };
 
-/// Publishes recorded messages as they were, at the times they came.
+/// Publishes recorded messages as they were, at the times they came; in lock step, in the order in
+/// which they were published, without a pause, and no node does anything but in its turn.
 class Player {
  public:
   /// @param channels that are played. @throws StartupFault where a topic cannot be written
@@ -41,7 +45,21 @@ class Player {
     runtime::RawPublisher publisher;
     const introspection::Type* type = nullptr;  // nullptr: not known here
     bool transient_local = false;
+    bool reliable = false;
+    std::string turn_of = {};  // full name of the node whose turns these are
   };
+  struct Held {
+    std::uint16_t channel = 0;
+    std::uint64_t log_time_ns = 0;
+    Bytes data;
+  };
+  int matched() const;
+  void wait_for_turn_takers();
+  void settle(double longest_s);
+  Status play_in_time();
+  Status play_in_lock_step();
+  Status play_held(std::uint64_t until_ns);
+  Status play_in_order(Held& held);
   Status publish_latched_before(std::uint64_t from_ns);
   Status publish(Track& track, View data, std::uint64_t log_time_ns);
   void wait_until(std::int64_t steady_ns);
@@ -53,6 +71,9 @@ class Player {
   std::map<std::uint16_t, Track> tracks_;  // by channel
   std::set<std::uint16_t> channels_;
   runtime::RawPublisher clock_;
+  std::optional<TurnGiver> turns_;                // in lock step
+  std::multimap<std::uint64_t, Held> held_;       // by the time of publication
+  std::set<std::string> roll_;                    // nodes that had a turn
   Bytes message_;
   std::uint64_t published_ = 0;
   std::uint64_t from_ns_ = 0;     // log time that is played at ...

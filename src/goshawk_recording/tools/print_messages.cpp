@@ -1,5 +1,7 @@
 #include "print_messages.hpp"
 
+#include <zlib.h>
+
 #include <cstdio>
 
 #include "goshawk/introspection/codec.hpp"
@@ -25,6 +27,7 @@ Status print_messages(Reader& reader, const std::set<std::uint16_t>& channels) {
                        {"type", type},
                        {"log_time_s", double(m.log_time_ns) * 1e-9},
                        {"bytes", m.data.size()},
+                       {"crc32", crc32(0, m.data.data(), uInt(m.data.size()))},
                        {"value", value_of(type, m.data)}};
     return std::printf("%s\n", line.dump(-1, ' ', false, Json::error_handler_t::replace).c_str()) >
            0;

@@ -1,6 +1,7 @@
 #include <signal.h>
 #include <sys/prctl.h>
 
+#include <chrono>
 #include <cstdio>
 #include <ctime>
 
@@ -14,14 +15,31 @@ namespace {
 constexpr double kLookPeriod_s = 0.05;  // for new topics
 constexpr double kFlushPeriod_s = 1.0;  // what kill -9 may cost
 
-struct Options {
+struct RecordCall {
   std::vector<std::string> topics;
   std::vector<std::string> exclude;
   std::string file;
   bool overwrite = false;
   double duration_s = 0.0;  // 0: until Ctrl-C
+  bool lock_step = false;
   bool stop_with_parent = false;
   bool json = false;
+};
+
+/// The machine's time, also where messages have simulated time.
+class Stopwatch {
+ public:
+  double seconds() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
+  /// @return whether period_s is over; it begins anew then
+  bool lap(double period_s) {
+    if (seconds() < period_s) return false;
+    begin_ = Clock::now();
+    return true;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point begin_ = Clock::now();
 };
 
 std::string dated_name() {
@@ -31,13 +49,17 @@ std::string dated_name() {
   return name;
 }
 
-void add_options(CLI::App& app, Options& o) {
+void add_options(CLI::App& app, RecordCall& o) {
   app.add_option("topics", o.topics, "names, or beginnings like /uav1/* (default: all)");
   app.add_option("-o,--output", o.file, "file (default recording_DATE.mcap)");
   app.add_option("-x,--exclude", o.exclude, "topic not to record; may repeat")->expected(1);
   app.add_flag("--overwrite", o.overwrite, "replace the file where it exists");
   app.add_option("-d,--duration", o.duration_s, "[s] end by itself after this time")
       ->check(CLI::Range(0.0, 1e9));
+  app.add_flag(
+      "--lock-step", o.lock_step,
+      "take turns as node goshawk_record: name it last in the plant's lock_step_nodes, and "
+      "no message is lost; times are simulated");
   app.add_flag("--stop-with-parent", o.stop_with_parent,
                "end as on Ctrl-C when the process that started this one ends");
   app.add_flag("--json", o.json, "print one JSON object at the end (docs/cli.md)");
@@ -59,7 +81,7 @@ double megabytes(std::uint64_t bytes) {
   return double(bytes) * 1e-6;
 }
 
-void print_end(const Recorder& recorder, const Options& o, double seconds) {
+void print_end(const Recorder& recorder, const RecordCall& o, double seconds) {
   const auto counts = recorder.counts();
   const auto& state = recorder.state();
   if (o.json) {
@@ -88,7 +110,7 @@ void print_end(const Recorder& recorder, const Options& o, double seconds) {
   }
 }
 
-int record(const Options& o) {
+int record(const RecordCall& o) {
   const Interruptible interruptible;
   if (o.stop_with_parent) prctl(PR_SET_PDEATHSIG, SIGINT);
   auto sink = create_file(o.file, o.overwrite);
@@ -98,19 +120,21 @@ int record(const Options& o) {
   auto context = join_domain();
   if (!context) return report_failure("record", context.error(), o.json, kNotDone);
   runtime::Node node(**context, "goshawk_record");
+  if (o.lock_step) node.run_in_lock_step();
   Recorder recorder(**context, node, *std::move(writer), {o.topics, o.exclude});
   say("record", "recording to " + o.file + (o.duration_s > 0.0 ? "" : ", until Ctrl-C"));
-  node.every(kLookPeriod_s, [&] { recorder.join(); });
-  node.every(kFlushPeriod_s, [&] { (void)recorder.flush(); });
-  const auto begin = node.now_ns();
-  const auto seconds = [&] { return double(node.now_ns() - begin) * 1e-9; };
+  const Stopwatch whole;
+  Stopwatch looked, flushed;
+  recorder.join();
   while (recorder.state() && !Interruptible::interrupted() &&
-         (o.duration_s <= 0.0 || seconds() < o.duration_s)) {
+         (o.duration_s <= 0.0 || whole.seconds() < o.duration_s)) {
     node.spin_some(kLookPeriod_s);
+    if (looked.lap(kLookPeriod_s)) recorder.join();
+    if (flushed.lap(kFlushPeriod_s)) (void)recorder.flush();
   }
   for (int k = 0; k < 4 && recorder.state(); ++k) node.spin_some(0.0);  // what has come already
   const auto closed = recorder.close();
-  print_end(recorder, o, seconds());
+  print_end(recorder, o, whole.seconds());
   return closed ? kDone : kNotDone;
 }
 
@@ -118,7 +142,7 @@ int record(const Options& o) {
 
 int record_command(const std::vector<std::string>& arguments) {
   CLI::App app("Record topics of the domain to an MCAP file.", "goshawk record");
-  Options o;
+  RecordCall o;
   add_options(app, o);
   if (const auto status = parse(app, arguments)) return *status;
   for (auto* names : {&o.topics, &o.exclude}) {

@@ -88,15 +88,16 @@ void Recorder::join(const std::string& topic, const Endpoints& writers) {
   const runtime::Qos qos{track.reliable, track.transient_local, depth_of(track.type)};
   node_.subscribe_raw(topic, runtime::raw_message_type(runtime::wire_type_name(track.type)), qos,
                       [this, id, topic](const void* data, const runtime::MessageInfo& info) {
-                        take(id, topic, *static_cast<const Bytes*>(data), info.received_ns);
+                        take(id, topic, *static_cast<const Bytes*>(data), info);
                       });
 }
 
 void Recorder::take(std::uint16_t channel, const std::string& topic, View bytes,
-                    std::int64_t time_ns) {
+                    const runtime::MessageInfo& info) {
   ++received_[topic];
-  const auto time = std::uint64_t(time_ns);
-  const auto status = writer_.write({channel, sequences_[channel]++, time, time, bytes});
+  const auto arrived = std::uint64_t(info.received_ns);
+  const auto sent = info.sent_ns > 0 ? std::uint64_t(info.sent_ns) : arrived;
+  const auto status = writer_.write({channel, sequences_[channel]++, arrived, sent, bytes});
   if (state_ && !status) state_ = status;
 }
 

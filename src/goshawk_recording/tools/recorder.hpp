@@ -46,7 +46,8 @@ class Recorder {
   void join(const std::string& topic, const Endpoints& writers);
   void check_late(const Track& track, const runtime::EndpointInfo& writer);
   std::uint16_t schema(const std::string& type);
-  void take(std::uint16_t channel, const std::string& topic, View bytes, std::int64_t time_ns);
+  void take(std::uint16_t channel, const std::string& topic, View bytes,
+            const runtime::MessageInfo& info);
   void say_once(const std::string& sentence);
 
   runtime::Context& context_;

@@ -13,6 +13,7 @@ namespace {
 struct Options {
   std::string file;
   std::vector<std::string> topics;
+  std::vector<std::string> lock_step;
   PlayerOptions player;
   bool loop = false;
   bool hold = false;
@@ -35,6 +36,10 @@ void add_options(CLI::App& app, Options& o) {
   app.add_flag("--restamp", o.player.restamp,
                "move the stamps inside of messages to now: stages refuse requests whose deadline "
                "has passed");
+  app.add_option("--lock-step", o.lock_step,
+                 "nodes that run with lock_step: true: they are given the recorded turns, so that "
+                 "each takes the same messages at the same time as in the recording")
+      ->expected(1, -1);
   app.add_option("--prefix", o.player.prefix, "before every topic, as in /replay");
   app.add_option("--wait", o.player.wait_s, "[s] longest wait for readers before the start")
       ->capture_default_str()
@@ -95,13 +100,41 @@ int list(const Reader& reader, const Options& o) {
   return kDone;
 }
 
+/// Whether a channel is played: in lock step with the turns of the nodes that were named, and not
+/// with those of others.
+bool wanted(const Options& o, const std::string& topic, const std::string& type) {
+  if (!o.player.lock_step.empty() && type == kTurnType) {
+    return o.player.lock_step.contains(turn_of(topic, type));
+  }
+  return o.topics.empty() || matches(o.topics, topic);
+}
+
+/// @return invalid_parameter that names a node whose turns are not in the recording
+Status check_turns(const Reader& reader, const Options& o) {
+  std::set<std::string> recorded;
+  std::string list;
+  for (const auto& [id, channel] : reader.channels()) {
+    const std::string node = turn_of(channel.topic, type_of(reader, channel));
+    if (!node.empty() && recorded.insert(node).second) list += (list.empty() ? "" : ", ") + node;
+  }
+  for (const auto& node : o.player.lock_step) {
+    if (recorded.contains(node)) continue;
+    return fail(ErrorCode::invalid_parameter,
+                "--lock-step " + node + ": " + o.file +
+                    (list.empty() ? " was not recorded in lock step: record a flight that was "
+                                    "launched with flight_lock_step"
+                                  : " has turns of " + list + " only"));
+  }
+  return success();
+}
+
 /// Channels of the chosen topics that DDS can carry.
 Result<std::set<std::uint16_t>> choose(const Reader& reader, const Options& o) {
   std::set<std::uint16_t> chosen;
   std::string here;
   for (const auto& [id, channel] : reader.channels()) {
     here += (here.empty() ? "" : ", ") + channel.topic;
-    if (!o.topics.empty() && !matches(o.topics, channel.topic)) continue;
+    if (!wanted(o, channel.topic, type_of(reader, channel))) continue;
     if (channel.message_encoding != "cdr" || type_of(reader, channel)[0] == '\0' ||
         !runtime::check_topic_name(channel.topic)) {
       say("replay", channel.topic + " is left out: it is no topic of ROS 2, whose messages are CDR");
@@ -157,6 +190,9 @@ int replay(const Options& o) {
   if (!reader) return report_failure("replay", reader.error(), o.json, kNotDone);
   for (const auto& complaint : reader->complaints()) say("replay", o.file + ": " + complaint);
   if (o.list) return list(*reader, o);
+  if (auto status = check_turns(*reader, o); !status) {
+    return report_failure("replay", status.error(), o.json, kWrongCall);
+  }
   const auto channels = choose(*reader, o);
   if (!channels) return report_failure("replay", channels.error(), o.json, kNotDone);
   if (o.print) {
@@ -191,6 +227,11 @@ int replay_command(const std::vector<std::string>& arguments) {
     auto full = full_topic_name(topic);
     if (!full) return report_failure("replay", full.error(), o.json, kWrongCall);
     topic = *full;
+  }
+  for (const auto& node : o.lock_step) {
+    auto full = full_topic_name(node);
+    if (!full) return report_failure("replay", full.error(), o.json, kWrongCall);
+    o.player.lock_step.insert(*full);
   }
   if (!o.player.prefix.empty()) {
     auto full = full_topic_name(o.player.prefix);

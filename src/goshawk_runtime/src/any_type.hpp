@@ -3,13 +3,16 @@
 #include <fastdds/dds/topic/TopicDataType.hpp>
 #include <string>
 
+#include "safe_type.hpp"
+
 namespace goshawk::runtime {
 
 /// What goes through the middleware: an object, and the type that knows how to (de)serialise it.
 struct Sample {
   eprosima::fastdds::dds::TopicDataType* type = nullptr;
   void* object = nullptr;
-  bool decoded = false;  // written by deserialize()
+  bool decoded = false;  // written by deserialize(), and where it is false:
+  std::string fault{};   // why, if more is known than that it is another type's
 };
 
 /// The type that topics are registered with. A participant knows one type a name and one topic a
@@ -36,6 +39,9 @@ class AnyType : public eprosima::fastdds::dds::TopicDataType {
   bool deserialize(Payload* payload, void* data) override {
     auto& sample = *static_cast<Sample*>(data);
     sample.decoded = sample.type != nullptr && sample.type->deserialize(payload, sample.object);
+    if (sample.decoded) return true;
+    const auto* explains = dynamic_cast<const Explains*>(sample.type);
+    sample.fault = explains == nullptr ? "" : explains->fault_of(*payload);
     return true;
   }
   std::function<std::uint32_t()> getSerializedSizeProvider(void* data) override {

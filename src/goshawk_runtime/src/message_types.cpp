@@ -60,5 +60,7 @@ GOSHAWK_MESSAGE(goshawk_msgs, NavigatorState)
 GOSHAWK_MESSAGE(goshawk_msgs, TrackingState)
 GOSHAWK_MESSAGE(goshawk_msgs, VehicleStatus)
 GOSHAWK_MESSAGE(goshawk_msgs, Turn)
+GOSHAWK_MESSAGE(goshawk_msgs, ParameterRequest)
+GOSHAWK_MESSAGE(goshawk_msgs, ParameterAnswer)
 
 }  // namespace goshawk::runtime

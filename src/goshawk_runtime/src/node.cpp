@@ -6,6 +6,7 @@
 #include <fastrtps/types/TypesBase.h>
 #include <bit>
 #include <cmath>
+#include <cstdlib>
 #include <fastdds/dds/publisher/DataWriter.hpp>
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
 
@@ -102,6 +103,11 @@ void apply(const Qos& qos, EndpointQos& out) {
       rtps::MemoryManagementPolicy_t::DYNAMIC_REUSABLE_MEMORY_MODE;
 }
 
+bool may_be_megabytes(std::string_view wire_name) {
+  return wire_name.ends_with("::VoxelGrid_") || wire_name.ends_with("::Octomap_") ||
+         wire_name.ends_with("::PointCloud2_");
+}
+
 }  // namespace
 
 void Node::Impl::wait(double timeout_s) {
@@ -154,14 +160,14 @@ int Node::Impl::take_some(const Node& node, Subscription& s) {
     if (!sample.decoded) {
       // The 1st, 2nd, 4th, 8th ...: a hostile sender must not fill the disk.
       if (std::has_single_bit(++s.undecoded)) {
-        node.log_->warn(
-            "a message on {} could not be decoded and was dropped ({} so far): does "
-            "its sender use the same IDL?",
-            s.topic, s.undecoded);
+        node.log_->warn("a message on {} could not be decoded and was dropped ({} so far): {}",
+                        s.topic, s.undecoded,
+                        sample.fault.empty() ? "does its sender use the same IDL?" : sample.fault);
       }
       continue;
     }
-    call(node, s.topic, s.callback, s.object, MessageInfo{node.now_ns()});
+    call(node, s.topic, s.callback, s.object,
+         MessageInfo{node.now_ns(), info.source_timestamp.to_ns()});
     if (stopping) return i + 1;
   }
   return kMostAtOnce;
@@ -191,7 +197,7 @@ std::string Node::full_name() const {
 
 std::shared_ptr<detail::Writer> Node::make_writer(std::string_view topic, const MessageType& type,
                                                   Qos qos) {
-  const std::string name = args_.resolve_topic(topic);
+  const std::string name = args_.resolve_topic(topic, name_);
   auto* dds_topic = impl_->context.topic(name, type.impl().support);
   dds::DataWriterQos writer_qos;
   auto* publisher = impl_->context.publisher;
@@ -218,13 +224,28 @@ std::unique_ptr<Subscription> Node::Impl::open(const Node& node, const std::stri
                                                Node::RawCallback callback) {
   auto* dds_topic = context.topic(name, type.impl().support);
   dds::DataReaderQos reader_qos;
+  bool own_port = false;
   if (context.subscriber->get_datareader_qos_from_profile(name, reader_qos) !=
       ReturnCode_t::RETCODE_OK) {
     reader_qos = dds::DATAREADER_QOS_DEFAULT;
     apply(qos, reader_qos);
+    // A process has one receiving thread for all else, and a setpoint must not wait there behind
+    // the hundreds of datagrams of a map. By turns all comes in order through one socket instead.
+    own_port = may_be_megabytes(type.name()) && !time.takes_turns &&
+               std::getenv("FASTRTPS_DEFAULT_PROFILES_FILE") == nullptr;
   }
-  auto* reader =
-      dds_topic == nullptr ? nullptr : context.subscriber->create_datareader(dds_topic, reader_qos);
+  const auto create = [&] {
+    return dds_topic == nullptr ? nullptr
+                                : context.subscriber->create_datareader(dds_topic, reader_qos);
+  };
+  dds::DataReader* reader = nullptr;
+  if (own_port) {
+    auto& properties = reader_qos.properties().properties();
+    properties.emplace_back("fastdds.unique_network_flows", "true");
+    reader = create();
+    if (reader == nullptr) properties.pop_back();  // all of its ports are taken
+  }
+  if (reader == nullptr) reader = create();
   if (reader == nullptr) {
     throw StartupFault(fail(ErrorCode::io_failed,
                             node.name_ + " cannot read " + name + " as " + type.name() +
@@ -243,7 +264,7 @@ std::unique_ptr<Subscription> Node::Impl::open(const Node& node, const std::stri
 void Node::subscribe_raw(std::string_view topic, const MessageType& type, Qos qos,
                          RawCallback callback) {
   auto subscription =
-      impl_->open(*this, args_.resolve_topic(topic), type, qos, std::move(callback));
+      impl_->open(*this, args_.resolve_topic(topic, name_), type, qos, std::move(callback));
   impl_->wait_set.attach_condition(subscription->reader->get_statuscondition());
   impl_->subscriptions.push_back(std::move(subscription));
 }
@@ -256,6 +277,12 @@ void Node::every(double period_s, std::function<void()> callback) {
   const auto period_ns =
       std::max(std::int64_t{1}, std::chrono::nanoseconds(to_steady(period_s)).count());
   impl_->timers.push_back({period_ns, impl_->timer_now_ns() + period_ns, std::move(callback)});
+}
+
+void Node::serve(std::unique_ptr<LiveParameters> parameters) {
+  // Asked for twice, as a component may: the newest counts.
+  if (impl_->parameters != nullptr) return impl_->parameters->replace(std::move(parameters));
+  impl_->parameters = std::make_unique<ParameterService>(*this, std::move(parameters));
 }
 
 void Node::spin() {

@@ -14,6 +14,7 @@
 #include "context_impl.hpp"
 #include "goshawk/runtime/node.hpp"
 #include "message_type_impl.hpp"
+#include "parameter_service.hpp"
 
 namespace goshawk::runtime {
 
@@ -86,6 +87,7 @@ struct Node::Impl {
   std::deque<Timer> timers;  // a callback may add one: elements stay where they are
   bool more = false;         // the last pass left messages behind
   SimulatedTime time;
+  std::unique_ptr<ParameterService> parameters;
 
   std::unique_ptr<Subscription> open(const Node& node, const std::string& topic,
                                      const MessageType& type, Qos qos, Node::RawCallback callback);

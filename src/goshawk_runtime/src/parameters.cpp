@@ -78,6 +78,14 @@ Status ParameterSource::add_file(const std::string& path, std::string_view node_
   return success();
 }
 
+// name:="'5'" is the string 5, as in a YAML file.
+ParameterSource::Entry ParameterSource::written(const std::string& value,
+                                                const std::string& origin) {
+  const bool quoted = value.size() >= 2 && (value.front() == '"' || value.front() == '\'') &&
+                      value.back() == value.front();
+  return {quoted ? value.substr(1, value.size() - 2) : value, origin, quoted, ""};
+}
+
 Status check_sections(const std::string& params_file, const std::vector<std::string>& known) {
   std::string faults;
   try {
@@ -106,7 +114,9 @@ std::string nearest_name(std::string_view wrong, const std::vector<std::string>&
   std::string best;
   std::size_t least = std::max<std::size_t>(3, wrong.size() / 2 + 1);
   for (const auto& name : known) {
-    const std::size_t distance = edit_distance(wrong, name);
+    // A unit that was left out, as in v_max for v_max_m_s, is the nearest of all.
+    const bool begins = wrong.size() >= 3 && name.starts_with(wrong) && name[wrong.size()] == '_';
+    const std::size_t distance = begins ? 1 : edit_distance(wrong, name);
     if (distance < least) {
       least = distance;
       best = name;
@@ -195,6 +205,13 @@ std::string to_text(const OneOf& one_of) {
 void Reader::add_fault(const std::string& name, const ParameterSource::Entry& entry,
                        const std::string& fault) {
   faults_.push_back(name + ": '" + entry.text + "' " + fault + " (" + entry.origin + ")");
+}
+
+std::string Reader::change_fault(const std::string& name, const ParameterSource::Entry& entry,
+                                 bool at_run_time) const {
+  if (changeable_ == Changeable::at_start) return "";
+  if (changeable_ == Changeable::at_run_time && at_run_time) return "";
+  return "takes effect at start only: restart the node with -p " + name + ":=" + entry.text;
 }
 
 Status Reader::finish(std::string_view node_name) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <utility>
 
 namespace goshawk::runtime {
 namespace {
@@ -13,12 +14,6 @@ Result<std::pair<std::string, std::string>> split(const std::string& text, const
                 std::string(what) + " '" + text + "' is not of the form name:=value");
   }
   return std::pair{text.substr(0, at), text.substr(at + 2)};
-}
-
-// -p name:="'5'" is the string 5, as in a YAML file.
-bool is_quoted(const std::string& value) {
-  return value.size() >= 2 && (value.front() == '"' || value.front() == '\'') &&
-         value.back() == value.front();
 }
 
 Status add_remap(RosArgs& args, const std::string& text) {
@@ -35,10 +30,17 @@ Status add_remap(RosArgs& args, const std::string& text) {
     return fail(ErrorCode::invalid_input,
                 "node name '" + to + "' holds a '/': set the namespace with -r __ns:=");
   }
-  for (const auto& name : {from, to}) {
+  const auto colon = from.find(':');
+  RosArgs::Remap remap{from, to};
+  if (colon != std::string::npos) {
+    remap.node = from.substr(0, colon);
+    remap.from = from.substr(colon + 1);
+    if (auto status = check_topic_name(remap.node); !status) return status;
+  }
+  for (const auto& name : {remap.from, remap.to}) {
     if (auto status = check_topic_name(name); !status) return status;
   }
-  args.remaps.emplace_back(from, to);
+  args.remaps.push_back(std::move(remap));
   return success();
 }
 
@@ -104,20 +106,19 @@ Result<ParameterSource> RosArgs::parameters_of(std::string_view name) const {
   }
   for (const auto& o : overrides) {
     if (!o.node.empty() && o.node != name) continue;
-    const bool quoted = is_quoted(o.value);
-    const std::string text = quoted ? o.value.substr(1, o.value.size() - 2) : o.value;
-    source.set(o.name, {text, "-p", quoted, ""});
+    source.set(o.name, ParameterSource::written(o.value, "-p"));
   }
   return source;
 }
 
-std::string RosArgs::resolve_topic(std::string_view topic) const {
+std::string RosArgs::resolve_topic(std::string_view topic, std::string_view node) const {
   const auto absolute = [&](std::string_view name) {
     if (name.starts_with('/')) return std::string(name);
     return (node_namespace == "/" ? "" : node_namespace) + "/" + std::string(name);
   };
-  for (const auto& [from, to] : remaps) {
-    if (from == topic || absolute(from) == absolute(topic)) return absolute(to);
+  for (const auto& rule : remaps) {
+    if (!rule.node.empty() && rule.node != node) continue;
+    if (rule.from == topic || absolute(rule.from) == absolute(topic)) return absolute(rule.to);
   }
   return absolute(topic);
 }

@@ -5,14 +5,24 @@
 #include <cstring>
 #include <exception>
 
+#include "payload_check.hpp"
+
 namespace goshawk::runtime {
+
+/// What can say why it does not decode a payload.
+class Explains {
+ public:
+  virtual ~Explains() = default;
+  virtual std::string fault_of(const eprosima::fastrtps::rtps::SerializedPayload_t& p) const = 0;
+};
 
 /// A generated PubSubType made safe (docs/adr/0002): what the generated code throws while it
 /// decodes (a bool byte of 7, a sequence longer than the payload, no memory) would end the process;
-/// here it is a sample that did not decode. Loans are off, because the generated is_plain is
+/// here it is a sample that did not decode, and what claims more than it brings is not decoded at
+/// all. Loans are off, because the generated is_plain is
 /// wrong for types with padding, and there are no keys.
 template <typename PubSubType>
-class SafeType : public PubSubType {
+class SafeType : public PubSubType, public Explains {
  public:
   using Payload = eprosima::fastrtps::rtps::SerializedPayload_t;
 
@@ -28,7 +38,7 @@ class SafeType : public PubSubType {
   }
 
   bool deserialize(Payload* payload, void* data) override {
-    if (payload->length < 4) return false;  // no encapsulation header
+    if (!fault_of(*payload).empty()) return false;
     try {
       return PubSubType::deserialize(payload, data);
     } catch (const std::exception&) {
@@ -36,9 +46,16 @@ class SafeType : public PubSubType {
     }
   }
 
+  std::string fault_of(const Payload& payload) const override {
+    return check_.fault_of({payload.data, payload.length});
+  }
+
   bool is_bounded() const override { return false; }
   bool is_plain() const override { return false; }
   bool construct_sample(void*) const override { return false; }
+
+ private:
+  PayloadCheck check_{PubSubType().getName()};
 };
 
 }  // namespace goshawk::runtime

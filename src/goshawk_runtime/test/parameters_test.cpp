@@ -184,12 +184,19 @@ TEST(Parameters, DescribeThemselves) {
   EXPECT_EQ(list[3].type, "bool");
   EXPECT_EQ(list[4].range, "one of jastar, astar");
   EXPECT_EQ(list[5].range, "");
+  EXPECT_FALSE(list[0].at_run_time);
+  EXPECT_TRUE(list[1].at_run_time);
+  Config other;
+  other.count = 9;
+  EXPECT_EQ(describe_parameters(other)[2].value, "9");
+  EXPECT_EQ(describe_parameters(other)[2].default_value, "5");
 }
 
 TEST(NearestName, IsEmptyWhereNothingIsNear) {
   EXPECT_EQ(nearest_name("raduis_m", {"radius_m", "count"}), "radius_m");
   EXPECT_EQ(nearest_name("zzzzzz", {"radius_m", "count"}), "");
   EXPECT_EQ(nearest_name("", {}), "");
+  EXPECT_EQ(nearest_name("v_max", {"v_min_m_s", "v_max_m_s", "max"}), "v_max_m_s");
 }
 
 }  // namespace

@@ -46,6 +46,13 @@ TEST(RosArgs, RemapsTopics) {
   EXPECT_EQ(args.resolve_topic("map"), "/world");
 }
 
+TEST(RosArgs, RemapsTopicsOfOneNodeOfSeveral) {
+  const auto args = parse({"-r", "a:path:=other", "-r", "path:=common"});
+  EXPECT_EQ(args.resolve_topic("path", "a"), "/other");
+  EXPECT_EQ(args.resolve_topic("path", "b"), "/common");
+  EXPECT_EQ(args.resolve_topic("map", "a"), "/map");
+}
+
 TEST(RosArgs, NamesTheNode) {
   EXPECT_EQ(parse({"-r", "__node:=me"}).node_name, "me");
   EXPECT_EQ(parse({"--log-level", "debug"}).log_level, "debug");

@@ -59,6 +59,14 @@ Quadrotor::Quadrotor(const Config& config, const PlantFactory& make_plant)
   if (!reset(Vec3::Zero(), 0.0)) throw std::logic_error("a quadrotor cannot hover at the origin");
 }
 
+Status Quadrotor::reconfigure(const Config& config) {
+  if (auto status = simulator::check(config); !status) return status;
+  if (auto status = check_change(config_, config); !status) return status;
+  config_ = config;
+  wind_.change(wind_of(config).mean_map, config.gust_deviation_m_s);
+  return success();
+}
+
 Status Quadrotor::reset(const Vec3& position_map, double yaw_rad) {
   if (!position_map.allFinite() || !std::isfinite(yaw_rad)) {
     return fail(ErrorCode::invalid_input, "cannot reset to " + to_text(position_map) +

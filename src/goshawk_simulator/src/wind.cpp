@@ -16,8 +16,8 @@ Wind::Wind(const Parameters& parameters, double step_s)
 }
 
 void Wind::step() {
-  if (!(deviation_m_s_ > 0.0)) return;
-  gust_map_ = decay_ * gust_map_ + normal_vector(random_, renewal_ * deviation_m_s_);
+  gust_map_ *= decay_;
+  if (deviation_m_s_ > 0.0) gust_map_ += normal_vector(random_, renewal_ * deviation_m_s_);
 }
 
 }  // namespace goshawk::simulator

@@ -330,5 +330,20 @@ TEST(Quadrotor, LandsOnlyWhereTheMapShowsTheWayDownFree) {
   EXPECT_EQ(quadrotor.control(), Control::landing);
 }
 
+TEST(Quadrotor, TheWindMayChangeInFlightAndNothingElse) {
+  Config config;
+  auto quadrotor = Quadrotor::create(config).value();
+  config.wind_x_m_s = 3.0;
+  ASSERT_TRUE(quadrotor.reconfigure(config));
+  EXPECT_EQ(quadrotor.wind_map(), Vec3(3, 0, 0));
+  Config other = config;
+  other.vehicle.mass_kg = 1.1;
+  EXPECT_EQ(quadrotor.reconfigure(other).code(), ErrorCode::invalid_parameter);
+  other = config;
+  other.wind_x_m_s = 31.0;
+  EXPECT_EQ(quadrotor.reconfigure(other).code(), ErrorCode::invalid_parameter);
+  EXPECT_EQ(quadrotor.wind_map(), Vec3(3, 0, 0));
+}
+
 }  // namespace
 }  // namespace goshawk::simulator

@@ -47,5 +47,15 @@ TEST(Wind, TheSameSeedBlowsTheSameBitsAndAnotherSeedOthers) {
   }
 }
 
+TEST(Wind, ThatChangesCarriesItsGustsOnWithoutAJump) {
+  Wind wind({.mean_map = {1, 0, 0}, .gust_deviation_m_s = 1.0, .gust_time_s = 0.5}, 0.001);
+  for (int i = 0; i < 100; ++i) wind.step();
+  const Vec3 gust = wind.velocity_map() - Vec3(1, 0, 0);
+  wind.change({0, 2, 0}, 0.0);
+  EXPECT_LT((wind.velocity_map() - Vec3(0, 2, 0) - gust).norm(), 1e-12);
+  for (int i = 0; i < 500; ++i) wind.step();  // one correlation time
+  EXPECT_NEAR((wind.velocity_map() - Vec3(0, 2, 0)).norm(), gust.norm() * std::exp(-1.0), 1e-9);
+}
+
 }  // namespace
 }  // namespace goshawk::simulator

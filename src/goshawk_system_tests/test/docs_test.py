@@ -1,17 +1,29 @@
 #!/usr/bin/python3
 """The pages tell the truth: codes, generated pages, and every command line that they show."""
 
+import concurrent.futures
 import re
 import shlex
+import time
 
 import harness
-from harness import SOURCE, SystemTest, note
+from harness import SOURCE, SystemTest, note, until
 from stack import Stack
 
 PAGES = [SOURCE / "README.md", *sorted((SOURCE / "docs").glob("*.md"))]
-# What runs until it is stopped: it must live this long.
-ENDLESS = re.compile(r"goshawk (launch|run|view(?!.*--check)|topic (echo|hz|delay|bw))\b")
-LIVES_S = 3.0
+# What runs until it is stopped, and how it says that it does its work.
+ENDLESS = [(re.compile(r"goshawk launch\b"), lambda text: starts_all(text)),
+           (re.compile(r"goshawk run\b"), lambda text: "ready: " in text),
+           (re.compile(r"goshawk view\b(?!.*--check)"), lambda text: "open http://" in text),
+           (re.compile(r"goshawk topic (echo|hz|delay|bw)\b(?!.*--once)"),
+            lambda text: text.count("\n") > 0)]
+
+
+def starts_all(text):
+    """Each of the stages that a launch names runs."""
+    named = re.search(r"\[launch\] starting (.*?);", text)
+    return named is not None and all(f"[launch] {stage}: running\n" in text
+                                     for stage in named.group(1).split(", "))
 
 
 def command_lines(path):
@@ -81,30 +93,53 @@ class Commands(SystemTest):
             environment["ROS_DOMAIN_ID"] = str(domain.number)
         return environment
 
+    def here(self, line):
+        """The pages' examples write to /tmp and listen on ports that others may have: two runs of
+        this test must not meet there."""
+        line = line.split("  #")[0].replace("/tmp/", f"{self.sandbox.folder}/")
+        if re.search(r"goshawk view\b(?!.*--check)", line):
+            line += " --port 0 --no-open"
+            line += f" --bridge ws://127.0.0.1:{harness.free_port()}" if "--live" in line else ""
+        if "launch flight_view" in line:
+            line += " -p viewer_bridge:port:=0"
+        return line
+
     def start_line(self, line, exports):
-        words = shlex.split(line.split("  #")[0])
+        words = shlex.split(self.here(line))
         words[0] = str(self.sandbox.folder / words[0])
         name = " ".join(line.split()).replace("tools/fly", "goshawk fly")
         return name, self.sandbox.start(*words, env=self.environment(name, exports))
 
-    def check_endless(self, name, process):
-        """It lives until it is stopped; a topic's reader may also end where nobody writes."""
-        status = process.wait(LIVES_S)
-        if status is None:
-            status, _ = process.stop()
-        elif "topic" not in name:
-            self.fail(f"ended by itself: {process.outcome()}")
-        self.assertIn(status, (0, 1), str(process.outcome()))
+    def check_endless(self, process, works):
+        """It says that it does its work, and ends well when it is stopped."""
+        until(lambda: works(process.out() + process.err()) or not process.alive(), 60.0)
+        self.assertTrue(process.alive(), f"ended by itself: {process.outcome()}")
+        self.assertTrue(works(process.out() + process.err()), str(process.outcome()))
+        status, _ = process.stop()
+        self.assertEqual(status, 0, str(process.outcome()))
 
     def check_line(self, name, process):
-        if ENDLESS.search(name):
-            return self.check_endless(name, process)
+        for pattern, works in ENDLESS:
+            if pattern.search(name):
+                return self.check_endless(process, works)
         if process.wait(120.0) is None:
             self.fail(f"does not end: {process.outcome()}")
         outcome = process.outcome()
         self.assert_civil(outcome)
         self.assertEqual(outcome.status, 0, str(outcome))
         return None
+
+    def faults_of(self, lines):
+        """Runs one line after the other. @return what is wrong, by page and line"""
+        faults = {}
+        for line, (page, exports) in lines.items():
+            begin = time.monotonic()
+            try:
+                self.check_line(*self.start_line(line, exports))
+            except AssertionError as fault:
+                faults[page, line] = str(fault)
+            note(f"{time.monotonic() - begin:6.1f} s  {line}")
+        return faults
 
     def test_every_command_line_of_the_pages(self):
         Stack(self.sandbox).wait_ready()
@@ -113,17 +148,22 @@ class Commands(SystemTest):
                  if "my_map" not in line and "/path/to" not in line}
         note(f"{len(lines)} command lines")
         self.assertGreater(len(lines), 8)
-        # Flights take their time: two run at once.
-        flights = [line for line in lines if line.startswith("tools/fly")]
-        others = [line for line in lines if line not in flights]
-        for pair in (flights[k:k + 2] for k in range(0, len(flights), 2)):
-            started = [(line, self.start_line(line, lines[line][1])) for line in pair]
-            for line, process in started:
-                with self.subTest(page=lines[line][0], line=line):
-                    self.check_line(*process)
-        for line in others:  # some look at what a flight left
-            with self.subTest(page=lines[line][0], line=line):
-                self.check_line(*self.start_line(line, lines[line][1]))
+        # Flights take their time, and need little of the machine's: the others run meanwhile, and
+        # those that look at what a flight left afterwards.
+        flights = {line: lines[line] for line in lines
+                   if re.match(r"tools/(fly|goshawk campaign)\b", line)}
+        folders = [folder for line in flights for folder in re.findall(r"--output (\S+)", line)]
+        after = {line: lines[line] for line in lines if line not in flights and any(
+            re.search(re.escape(folder) + r"(/|\s|$)", line) for folder in folders)}
+        self.assertGreater(len(after), 0)
+        others = {line: lines[line] for line in lines if line not in flights | after}
+        with concurrent.futures.ThreadPoolExecutor() as pool:
+            flown = pool.submit(self.faults_of, flights)
+            faults = {**self.faults_of(others), **flown.result()}
+        faults.update(self.faults_of(after))
+        for (page, line), fault in faults.items():
+            with self.subTest(page=page, line=line):
+                self.fail(fault)
 
 
 if __name__ == "__main__":

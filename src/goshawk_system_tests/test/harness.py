@@ -8,6 +8,7 @@ A test file ends with `harness.main()`; CTest calls it with the names of test cl
 import json
 import os
 import pathlib
+import random
 import signal
 import socket
 import subprocess
@@ -60,6 +61,18 @@ def udp_ports_in_use():
     return ports
 
 
+def free_port():
+    """For who must be told one: not of those that the kernel gives to whoever asks for any."""
+    for port in random.SystemRandom().sample(range(10000, 32000), 100):
+        with socket.socket() as s:
+            try:
+                s.bind(("127.0.0.1", port))
+                return port
+            except OSError:
+                continue
+    raise RuntimeError("no port from 10000 to 31999 is free")
+
+
 class Domain:
     """A DDS domain that nobody else uses, until close()."""
 
@@ -100,13 +113,13 @@ class Outcome:
 class Process:
     """A program that runs beside the test; its output goes to files. Stopped by its own id."""
 
-    def __init__(self, command, env, folder, cwd=None):
+    def __init__(self, command, env, folder, cwd=None, stdin=subprocess.DEVNULL):
         self.command = [str(word) for word in command]
         name = f"{os.path.basename(self.command[0])}-{uuid.uuid4().hex[:8]}"
         self.out_path, self.err_path = (folder / f"{name}.{end}" for end in ("out", "err"))
         with open(self.out_path, "wb") as out, open(self.err_path, "wb") as err:
-            self.process = subprocess.Popen(self.command, stdin=subprocess.DEVNULL, stdout=out,
-                                            stderr=err, env=env, cwd=cwd)
+            self.process = subprocess.Popen(self.command, stdin=stdin, stdout=out, stderr=err,
+                                            env=env, cwd=cwd)
         self.begin = time.monotonic()
 
     @property
@@ -137,6 +150,8 @@ class Process:
             if self.wait(timeout_s) is None:
                 self.process.kill()
                 self.process.wait()
+        if self.process.stdin:
+            self.process.stdin.close()
         return self.process.returncode, time.monotonic() - begin
 
     def outcome(self):
@@ -177,6 +192,25 @@ def processes_of(token):
     return found
 
 
+class Publisher:
+    """`goshawk topic pub`, which writes a message whenever it is told to."""
+
+    def __init__(self, sandbox, topic, kind):
+        self.process = sandbox.start(GOSHAWK, "topic", "pub", topic, kind, "-", "--json",
+                                     "--timeout", "10", stdin=subprocess.PIPE)
+        self.sent = 0
+
+    def send(self, message):
+        """Returns once all who read the topic reliably have it."""
+        self.process.process.stdin.write(json.dumps(message).encode() + b"\n")
+        self.process.process.stdin.flush()
+        self.sent += 1
+        until(lambda: len(self.process.lines()) == self.sent or not self.process.alive(), 20.0,
+              0.01)
+        if len(self.process.lines()) != self.sent:
+            raise AssertionError(f"nobody took the message: {self.process.outcome()}")
+
+
 class Sandbox:
     """A domain, a folder, an environment; close() ends what is still there and tells of it."""
 
@@ -206,8 +240,9 @@ class Sandbox:
         self.temporary.cleanup()
         return told
 
-    def start(self, *command, env=None, cwd=None):
-        process = Process(command, {**self.env, **(env or {})}, self.folder, cwd or self.folder)
+    def start(self, *command, env=None, cwd=None, **options):
+        process = Process(command, {**self.env, **(env or {})}, self.folder, cwd or self.folder,
+                          **options)
         self.processes.append(process)
         return process
 

@@ -7,19 +7,19 @@ import re
 import unittest
 import uuid
 
-from harness import GOSHAWK, STAGES, Sandbox, SystemTest, until
+from harness import GOSHAWK, STAGES, Publisher, Sandbox, SystemTest, until
 
 
 class Launch:
     """`goshawk launch FILE` with JSON events, and the logs of what it starts."""
 
-    def __init__(self, sandbox, file, *ros_args):
+    def __init__(self, sandbox, file, *ros_args, env=None):
         self.sandbox = sandbox
         self.logs = sandbox.folder / f"logs-{uuid.uuid4().hex[:6]}"
         command = [GOSHAWK, "launch", file, "--json", "--log-dir", self.logs]
         if ros_args:
             command += ["--ros-args", *ros_args]
-        self.process = sandbox.start(*command)
+        self.process = sandbox.start(*command, env=env)
 
     def events(self, event=None, stage=None):
         return [e for e in self.process.lines()
@@ -59,6 +59,7 @@ class Stack:
         self.reports = self.echo("stage_report")
         self.states = self.echo("navigator_state")
         self.odom = self.echo("odom", "--no-arr")
+        self.publishers = {}
 
     def echo(self, topic, *options):
         return self.sandbox.start(GOSHAWK, "topic", "echo", topic, "--json", "--timeout", "60",
@@ -85,15 +86,26 @@ class Stack:
                 return position_of(json.loads(line))
         return None
 
-    def pub(self, topic, kind, message, *options, expect=0):
+    def pub(self, topic, kind, message):
         result = self.sandbox.goshawk("topic", "pub", topic, kind, json.dumps(message), "--json",
-                                      "--timeout", "10", *(options or ["--once"]), timeout_s=30)
-        if result.status != expect:
+                                      "--timeout", "10", "--once", timeout_s=30)
+        if result.status != 0:
             raise AssertionError(f"topic pub: {result}")
         return result
 
-    def send_goal(self, goal):
-        self.pub("goal_pose", "geometry_msgs/msg/PoseStamped", goal_message(goal))
+    def tell(self, topic, kind, message):
+        """Publishes once, by a publisher that stays: who reads the topic is found only once."""
+        if topic not in self.publishers:
+            self.publishers[topic] = Publisher(self.sandbox, topic, kind)
+        self.publishers[topic].send(message)
+
+    def forget_publisher(self, topic):
+        """Who reads the topic has changed: the next message is for those who do so then."""
+        if topic in self.publishers:
+            self.publishers.pop(topic).process.stop()
+
+    def send_goal(self, goal, frame="map"):
+        self.tell("goal_pose", "geometry_msgs/msg/PoseStamped", goal_message(goal, frame))
 
     def wait_state(self, wanted, since, timeout_s):
         """The first navigator state of these names after `since` states. @return it, or None"""

@@ -5,6 +5,7 @@ import json
 import math
 import os
 import pathlib
+import re
 import shutil
 import socket
 
@@ -53,12 +54,6 @@ def page_data(page):
     mark = '<script type="application/json" id="flight">'
     begin = text.index(mark) + len(mark)
     return json.loads(text[begin:text.index("</script>", begin)])
-
-
-def free_port():
-    with socket.socket() as s:
-        s.bind(("127.0.0.1", 0))
-        return s.getsockname()[1]
 
 
 class FlightPage(SystemTest):
@@ -163,7 +158,7 @@ class LiveMapView(MapCase):
             self.sandbox.start(GOSHAWK, "topic", "pub", topic, kind, json.dumps(message), "-r", "5",
                                "-n", "100000")
         view = self.sandbox.start(GOSHAWK, "view", "--live", "--bridge",
-                                  f"ws://127.0.0.1:{free_port()}", "--port", "0", "--no-open",
+                                  f"ws://127.0.0.1:{harness.free_port()}", "--port", "0", "--no-open",
                                   "--json", env=environment)
         shown = until(view.lines, 15.0)
         self.assertTrue(shown and shown[0]["ok"], str(view.outcome()))
@@ -171,12 +166,22 @@ class LiveMapView(MapCase):
         self.assertEqual(view.stop()[0], 0, str(view.outcome()))
 
 
+NEAR = (3.5, 6.1, 1.1)  # two metres from where the layout's goal is
+
+
 class LiveView(StackTest):
     """The bridge beside a flight: a page that flies it, other viewers' topics, a busy port."""
 
     launch_file = "flight_view"
-    port = free_port()
-    ros_args = ("-p", f"viewer_bridge:port:={port}")
+    ros_args = ("-p", "viewer_bridge:port:=0")
+
+    @property
+    def port(self):
+        """Any that was free, as the bridge says."""
+        log = self.stack.launch.logs / "viewer_bridge.log"
+        said = until(lambda: re.search(r"listens on ws://127\.0\.0\.1:(\d+)", log.read_text()), 20.0)
+        self.assertTrue(said, self.stack.launch.tails())
+        return int(said.group(1))
 
     def test_a_click_on_the_page_flies_the_vehicle(self):
         browser_environment(self)
@@ -197,7 +202,7 @@ class LiveView(StackTest):
     def test_foxglove_studio_flies_it_too(self):
         environment = studio_environment(self)
         # The goal of its layout is (3, 8, 2).
-        self.assertEqual(self.stack.fly_to((3.0, 0.0, 1.0))["state"], "arrived")
+        self.assertEqual(self.stack.fly_to(NEAR)["state"], "arrived")
         view = self.sandbox.start(GOSHAWK, "view", "--foxglove", "--live", "--bridge",
                                   f"ws://127.0.0.1:{self.port}", "--port", "0", "--no-open",
                                   "--json", env=environment)
@@ -211,7 +216,7 @@ class LiveView(StackTest):
         self.assertEqual(view.stop()[0], 0, str(view.outcome()))
 
     def test_other_viewers_get_markers(self):
-        self.assertEqual(self.stack.fly_to((3.0, 0.0, 1.0))["state"], "arrived")
+        self.assertEqual(self.stack.fly_to(NEAR)["state"], "arrived")
         for topic, wanted in [("view/obstacles", {"obstacles"}),
                               ("view/plan", {"pruned path", "path as searched", "corridor",
                                              "corridor edges", "trajectory"}),

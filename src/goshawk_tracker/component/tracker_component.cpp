@@ -70,7 +70,8 @@ class TrackerComponent : public Component {
  public:
   explicit TrackerComponent(Node& node)
       : node_(node),
-        config_(node.parameters<Config>()),
+        config_(
+            node.parameters<Config>([this](const Config& c) { return tracker_.reconfigure(c); })),
         tracker_(make_tracker(config_)),
         reporter_(node, config_.controller),
         commands_(node.advertise<msg::ThrustAttitude>("command", Qos::best_effort())),

@@ -38,6 +38,13 @@ Result<Tracker> Tracker::create(const Config& config) {
 Tracker::Tracker(const Config& config)
     : config_(config), controller_(config), guard_(config.landing, config.land_height_m) {}
 
+Status Tracker::reconfigure(const Config& config) {
+  if (auto status = check(config); !status) return status;
+  if (auto status = check_change(config_, config); !status) return status;
+  config_ = config;
+  return success();
+}
+
 Status Tracker::accept(CommittedTrajectory committed, std::int64_t now_ns) {
   if (auto status = admit(committed, config_); !status) return status;
   if (auto status = check_start(committed, now_ns); !status) return status;

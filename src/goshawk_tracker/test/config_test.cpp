@@ -44,5 +44,23 @@ TEST(Config, LeastThrustAboveTheWeightIsRefused) {
   EXPECT_THAT(check(config).error().message, testing::HasSubstr("min_thrust_n (12)"));
 }
 
+TEST(Config, WhatTheForceDependsOnDoesNotChangeInFlight) {
+  Config config;
+  auto tracker = Tracker::create(config).value();
+  config.yaw = "keep";
+  config.land_after_s = 30.0;
+  EXPECT_TRUE(tracker.reconfigure(config));
+  for (double Config::*field : {&Config::mass_kg, &Config::position_xy_1_s2, &Config::max_tilt_rad,
+                                &Config::error_allowance_m, &Config::start_tolerance_m}) {
+    Config other = config;
+    other.*field *= 1.1;
+    const auto status = tracker.reconfigure(other);
+    ASSERT_FALSE(status);
+    EXPECT_THAT(status.error().message, testing::HasSubstr("cannot change at run time"));
+  }
+  config.land_after_s = -1.0;
+  EXPECT_THAT(tracker.reconfigure(config).error().message, testing::HasSubstr("land_after_s"));
+}
+
 }  // namespace
 }  // namespace goshawk::tracker

@@ -9,7 +9,7 @@
 namespace goshawk::tracker {
 namespace {
 
-std::int64_t ns(double s) {
+std::int64_t nanoseconds(double s) {
   return std::llround(s * 1e9);
 }
 
@@ -34,19 +34,20 @@ TEST(Reference, AHeldPointIsAtRestForEver) {
   reference.brake(5, 2.0);
   EXPECT_FALSE(reference.braking());
   EXPECT_TRUE(reference.at_rest(0));
-  EXPECT_EQ(reference.at(ns(1e6)).position, Vec3(1, 2, 3));
-  EXPECT_EQ(reference.at(ns(1e6)).velocity, Vec3::Zero());
+  EXPECT_EQ(reference.at(nanoseconds(1e6)).position, Vec3(1, 2, 3));
+  EXPECT_EQ(reference.at(nanoseconds(1e6)).velocity, Vec3::Zero());
 }
 
 TEST(Reference, FollowsTheTrajectoryFromItsStartTimeAndRestsAtItsEnd) {
-  const std::int64_t start = ns(1000.0);
+  const std::int64_t start = nanoseconds(1000.0);
   const auto reference = make(start);
   const auto& trajectory = reference.committed().trajectory;
   const double T = reference.duration_s();
-  EXPECT_LT((reference.at(start + ns(1.0)).jerk - trajectory.sample(1.0).jerk).norm(), 1e-6);
-  EXPECT_FALSE(reference.at_rest(start + ns(T - 0.01)));
-  EXPECT_TRUE(reference.at_rest(start + ns(T + 0.01)));
-  const auto after = reference.at(start + ns(T + 10.0));
+  EXPECT_LT((reference.at(start + nanoseconds(1.0)).jerk - trajectory.sample(1.0).jerk).norm(),
+            1e-6);
+  EXPECT_FALSE(reference.at_rest(start + nanoseconds(T - 0.01)));
+  EXPECT_TRUE(reference.at_rest(start + nanoseconds(T + 0.01)));
+  const auto after = reference.at(start + nanoseconds(T + 10.0));
   EXPECT_LT((after.position - trajectory.sample(T).position).norm(), 1e-12);
   EXPECT_EQ(after.acceleration, Vec3::Zero());
 }
@@ -54,19 +55,19 @@ TEST(Reference, FollowsTheTrajectoryFromItsStartTimeAndRestsAtItsEnd) {
 TEST(Reference, BrakingStaysOnThePathAndComesToRest) {
   for (const double begin : {0.05, 1.0, 3.0, 5.5}) {
     auto reference = make(0);
-    const double speed = reference.at(ns(begin)).velocity.norm();
-    reference.brake(ns(begin), 2.0);
-    reference.brake(ns(begin + 0.1), 2.0);  // again: nothing new
+    const double speed = reference.at(nanoseconds(begin)).velocity.norm();
+    reference.brake(nanoseconds(begin), 2.0);
+    reference.brake(nanoseconds(begin + 0.1), 2.0);  // again: nothing new
     ASSERT_TRUE(reference.braking());
     for (double t = begin; t < begin + 3.0; t += 0.05) {
-      const auto s = reference.at(ns(t));
+      const auto s = reference.at(nanoseconds(t));
       EXPECT_LT(distance_to_path(reference.committed().trajectory, s.position), 2e-3);
       EXPECT_LE(s.acceleration.norm(), 2.0 + 2.5);
     }
     const double T = std::max(0.5, speed / 2.0);
-    EXPECT_TRUE(reference.at_rest(ns(begin + T) + 1));
-    EXPECT_FALSE(reference.at_rest(ns(begin + T - 0.01)));
-    EXPECT_EQ(reference.at(ns(begin + T) + 1).velocity, Vec3::Zero());
+    EXPECT_TRUE(reference.at_rest(nanoseconds(begin + T) + 1));
+    EXPECT_FALSE(reference.at_rest(nanoseconds(begin + T - 0.01)));
+    EXPECT_EQ(reference.at(nanoseconds(begin + T) + 1).velocity, Vec3::Zero());
   }
 }
 
@@ -74,10 +75,10 @@ TEST(Reference, BrakingStaysOnThePathAndComesToRest) {
 TEST(Reference, DerivativesAreThoseOfThePosition) {
   for (const bool braking : {false, true}) {
     auto reference = make(0);
-    if (braking) reference.brake(ns(2.0), 1.0);
+    if (braking) reference.brake(nanoseconds(2.0), 1.0);
     const double h = 1e-4;
     for (double t = 2.05; t < 2.6; t += 0.05) {
-      const auto at = [&](double s) { return reference.at(ns(s)); };
+      const auto at = [&](double s) { return reference.at(nanoseconds(s)); };
       const auto slope = [&](const Vec3& a, const Vec3& b) { return Vec3((b - a) / (2.0 * h)); };
       const auto s = at(t);
       EXPECT_LT((slope(at(t - h).position, at(t + h).position) - s.velocity).norm(), 1e-5);
@@ -93,7 +94,7 @@ TEST(Reference, BeforeItsStartItComesInWithTheStartsVelocity) {
       BezierPiece::between({.velocity = {1, 0, 0}}, {.position = {4, 0, 0}}, 4.0);
   certify_as_is(committed);
   const auto reference = Reference::follow(committed);
-  EXPECT_LT((reference.at(-ns(0.01)).position - Vec3(-0.01, 0, 0)).norm(), 1e-9);
+  EXPECT_LT((reference.at(-nanoseconds(0.01)).position - Vec3(-0.01, 0, 0)).norm(), 1e-9);
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ class TrajectoryOptimizerComponent : public Component {
  public:
   explicit TrajectoryOptimizerComponent(Node& node)
       : node_(node),
-        config_(node.parameters<Config>()),
+        config_(node.parameters<Config>([this](const Config& c) { return reconfigure(c); })),
         optimizer_(make_optimizer(config_)),
         reporter_(node, std::string(optimizer_.implementation())),
         publisher_(node.advertise<msg::BezierTrajectory>("trajectory", Qos::reliable_last())) {
@@ -32,6 +32,13 @@ class TrajectoryOptimizerComponent : public Component {
   }
 
  private:
+  Status reconfigure(const Config& config) {
+    if (auto status = optimizer_.reconfigure(config); !status) return status;
+    config_ = config;
+    reporter_.set_implementation(std::string(optimizer_.implementation()));
+    return success();
+  }
+
   void on_corridor(const msg::Corridor& m, const MessageInfo& info) {
     Timing timing{.wire_ns = wire_time_ns(m.header(), info)};
     auto request = open_request(m.request(), node_.now_ns(), reporter_, timing);
@@ -99,7 +106,7 @@ class TrajectoryOptimizerComponent : public Component {
   }
 
   Node& node_;
-  const Config config_;
+  Config config_;
   double yaw_rad_ = 0.0;  // [rad] where the last trajectory ends
   TrajectoryOptimizer optimizer_;
   StageReporter reporter_;

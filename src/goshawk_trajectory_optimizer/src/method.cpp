@@ -258,11 +258,20 @@ bool TrajectoryOptimizer::Method::solve_fixed(const Request& request, Plan& plan
     last_.status = SplineSolver::Status::infeasible;
     return false;
   }
-  last_ = solver_.solve(problem_,
-                        {config_.max_iterations, 1e-7, 1e-9, 1e-9, 1e-6, request.out_of_time});
-  iterations_ += last_.iterations;
+  const SplineSolver::Settings settings{config_.max_iterations, 1e-7, 1e-9, 1e-9, 1e-6,
+                                        request.out_of_time};
+  bool decided = false;
+  if (ActiveSetSolver::suits(problem_)) {
+    last_ = active_set_.solve(problem_, settings);
+    iterations_ += last_.iterations;
+    decided = ActiveSetSolver::decided(last_);
+  }
+  if (!decided) {
+    last_ = solver_.solve(problem_, settings);
+    iterations_ += last_.iterations;
+  }
   if (last_.status != SplineSolver::Status::solved) return false;
-  take_solution(request, solver_.joints(), units_, 1.0, plan);
+  take_solution(request, decided ? active_set_.joints() : solver_.joints(), units_, 1.0, plan);
   return true;
 }
 

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "goshawk/trajectory_optimizer/active_set_solver.hpp"
 #include "goshawk/trajectory_optimizer/plan.hpp"
 #include "goshawk/trajectory_optimizer/spline_solver.hpp"
 #include "goshawk/trajectory_optimizer/trajectory_optimizer.hpp"
@@ -51,6 +52,7 @@ class TrajectoryOptimizer::Method {
 
   Config config_;
   SplineSolver solver_;
+  ActiveSetSolver active_set_;
   SplineProblem problem_;
   Units units_;
   std::optional<Solution> best_;

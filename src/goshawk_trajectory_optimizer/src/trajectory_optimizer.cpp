@@ -25,6 +25,13 @@ Result<TrajectoryOptimizer> TrajectoryOptimizer::create(const Config& config) {
   return TrajectoryOptimizer(config);
 }
 
+Status TrajectoryOptimizer::reconfigure(const Config& config) {
+  auto other = create(config);
+  if (!other) return other.error();
+  *this = *std::move(other);
+  return success();
+}
+
 Result<Solution> TrajectoryOptimizer::optimise(const Corridor& corridor, const FlatState& start,
                                                const FlatState& goal, const Limits& limits,
                                                const Query& query) {

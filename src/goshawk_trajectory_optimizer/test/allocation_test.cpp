@@ -6,6 +6,7 @@
 #include <new>
 
 #include "corridor_maker.hpp"
+#include "goshawk/trajectory_optimizer/active_set_solver.hpp"
 #include "goshawk/trajectory_optimizer/plan.hpp"
 #include "goshawk/trajectory_optimizer/spline_solver.hpp"
 
@@ -69,6 +70,28 @@ TEST(SplineSolver, AllocatesNothingOnceItHasSeenAProblemOfThatSize) {
       EXPECT_EQ(second.objective, first.objective);
     }
   }
+}
+
+TEST(ActiveSetSolver, AllocatesNothingOnceItHasSeenAProblemOfThatSize) {
+  Random random(15);
+  const auto corridor = test::random_corridor(random, {});
+  const FlatState start = test::at_rest(corridor.waypoints_map.front());
+  const FlatState goal = test::at_rest(corridor.waypoints_map.back());
+  const Limits limits{.j_max_m_s3 = 8.0};
+  const Request request{corridor, start, goal, limits};
+  Plan plan = cut_trapezoid(request, {});
+  for (double& duration : plan.durations_s) duration *= 2.0;
+  SplineProblem problem;
+  Units units;
+  ActiveSetSolver solver;
+  ASSERT_TRUE(make_problem(request, plan, false, 1.0, HUGE_VAL, problem, units));
+  const auto first = solver.solve(problem, {});
+  ASSERT_EQ(first.status, SplineSolver::Status::solved);
+  EXPECT_GE(solver.binding(), 1);
+  const long before = allocations;
+  const auto second = solver.solve(problem, {});
+  EXPECT_EQ(allocations, before);
+  EXPECT_EQ(second.objective, first.objective);
 }
 
 }  // namespace

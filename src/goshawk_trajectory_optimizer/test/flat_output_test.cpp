@@ -132,6 +132,31 @@ TEST(Flatness, AFlightThatAsksTooMuchIsSlowedWhereItDoes) {
   EXPECT_GT(slowed, 20);
 }
 
+TEST(Flatness, ALimitThatIsSetBetweenTwoFlightsHoldsForTheNext) {
+  Random random(8);
+  const auto corridor = test::random_corridor(random, {});
+  const auto flown = [&](TrajectoryOptimizer& optimizer) {
+    return optimizer
+        .optimise(corridor, at_rest(corridor.waypoints_map.front()),
+                  at_rest(corridor.waypoints_map.back()), {})
+        .value();
+  };
+  auto optimizer = TrajectoryOptimizer::create({}).value();
+  const auto before = flown(optimizer);
+  Config config;
+  config.max_tilt_rad = 0.1;
+  ASSERT_TRUE(optimizer.reconfigure(config));
+  const auto after = flown(optimizer);
+  EXPECT_TRUE(respects(flatness_of(after.trajectory), {0.0, 0.0, 0.1}));
+  EXPECT_GT(after.trajectory.duration_s(), before.trajectory.duration_s());
+  Config bad;
+  bad.max_tilt_rad = 2.0;
+  EXPECT_EQ(optimizer.reconfigure(bad).code(), ErrorCode::invalid_parameter);
+  EXPECT_EQ(flown(optimizer).trajectory.duration_s(), after.trajectory.duration_s());
+  ASSERT_TRUE(optimizer.reconfigure({}));
+  EXPECT_EQ(flown(optimizer).trajectory.duration_s(), before.trajectory.duration_s());
+}
+
 TEST(Flatness, AVehicleThatCannotHoverIsSaidToBeOne) {
   Config config;
   config.max_thrust_m_s2 = 9.0;

@@ -9,7 +9,7 @@ namespace {
 
 using test::at_rest;
 
-TrajectoryOptimizer make() {
+TrajectoryOptimizer make_optimizer() {
   return TrajectoryOptimizer::create({}).value();
 }
 
@@ -39,7 +39,7 @@ Replan interrupt(Random& random, const Corridor& corridor, const Trajectory& tra
 
 TEST(MovingStart, NearlyEveryInterruptedFlightIsReplannedAndCertified) {
   Random random(77);
-  auto optimizer = make();
+  auto optimizer = make_optimizer();
   int replanned = 0;
   constexpr int kFlights = 150;
   for (int i = 0; i < kFlights; ++i) {
@@ -70,7 +70,7 @@ TEST(MovingStart, NearlyEveryInterruptedFlightIsReplannedAndCertified) {
 }
 
 TEST(MovingStart, HoldsTheTopSpeedItStartsWith) {
-  auto optimizer = make();
+  auto optimizer = make_optimizer();
   auto start = at_rest(Vec3::Zero());
   start.velocity = Vec3(2.0, 0, 0);
   const auto solution =
@@ -81,7 +81,7 @@ TEST(MovingStart, HoldsTheTopSpeedItStartsWith) {
 }
 
 TEST(MovingStart, TurnsAroundWhereThereIsRoom) {
-  auto optimizer = make();
+  auto optimizer = make_optimizer();
   auto start = at_rest(Vec3::Zero());
   start.velocity = Vec3(-1.0, 0, 0);  // away from the goal; stops within 0.25 m of 1 m
   const auto solution =
@@ -91,7 +91,7 @@ TEST(MovingStart, TurnsAroundWhereThereIsRoom) {
 }
 
 TEST(MovingStart, TowardsAWallTooFastIsSaidToBeInfeasible) {
-  auto optimizer = make();
+  auto optimizer = make_optimizer();
   auto start = at_rest(Vec3::Zero());
   start.velocity = Vec3(-1.9, 0, 0);  // needs 0.9 m to stop, has 0.3 m
   const auto solution =
@@ -117,7 +117,7 @@ void expect_braked(const Solution& solution, const FlatState& start, const Limit
 }
 
 TEST(MovingStart, AboveALimitIsBrakedAndTheCertificateSaysSo) {
-  auto optimizer = make();
+  auto optimizer = make_optimizer();
   auto start = at_rest(Vec3::Zero());
   for (const double v : {2.05, 2.5, 3.0, 4.0}) {
     for (const double a : {-2.0, 0.0, 1.5, 2.5}) {
@@ -137,7 +137,7 @@ TEST(MovingStart, AboveALimitIsBrakedAndTheCertificateSaysSo) {
 }
 
 TEST(MovingStart, FarAboveALimitIsRefusedWithAReason) {
-  auto optimizer = make();
+  auto optimizer = make_optimizer();
   auto start = at_rest(Vec3::Zero());
   start.velocity = Vec3(11.0, 0, 0);
   const auto fast =
@@ -148,7 +148,7 @@ TEST(MovingStart, FarAboveALimitIsRefusedWithAReason) {
 }
 
 TEST(MovingGoal, IsReachedInMotion) {
-  auto optimizer = make();
+  auto optimizer = make_optimizer();
   auto goal = at_rest(Vec3(6, 0, 0));
   goal.velocity = Vec3(1.5, 0, 0);
   const auto corridor = test::straight_corridor(6.0);

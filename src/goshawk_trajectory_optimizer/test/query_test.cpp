@@ -13,8 +13,8 @@ TrajectoryOptimizer default_optimizer() {
   return TrajectoryOptimizer::create({}).value();
 }
 
-Result<Solution> from_rest(TrajectoryOptimizer& optimizer, const Corridor& corridor,
-                           const Limits& limits, const Query& query = {}) {
+Result<Solution> answer_from_rest(TrajectoryOptimizer& optimizer, const Corridor& corridor,
+                                  const Limits& limits, const Query& query = {}) {
   return optimizer.optimise(corridor, at_rest(corridor.waypoints_map.front()),
                             at_rest(corridor.waypoints_map.back()), limits, query);
 }
@@ -25,10 +25,10 @@ TEST(GivenArrival, IsMetAndSmootherThanTheSoonest) {
   for (int i = 0; i < 60; ++i) {
     SCOPED_TRACE(i);
     const auto corridor = test::random_corridor(random, {});
-    const auto soonest = from_rest(optimizer, corridor, {});
+    const auto soonest = answer_from_rest(optimizer, corridor, {});
     ASSERT_TRUE(soonest) << soonest.error().message;
     const double duration_s = soonest->trajectory.duration_s() * random.uniform(1.0, 4.0);
-    const auto solution = from_rest(optimizer, corridor, {}, {.duration_s = duration_s});
+    const auto solution = answer_from_rest(optimizer, corridor, {}, {.duration_s = duration_s});
     ASSERT_TRUE(solution) << solution.error().message;
     EXPECT_TRUE(solution->certificate.holds());
     EXPECT_NEAR(solution->trajectory.duration_s(), duration_s, 1e-9 * duration_s);
@@ -38,7 +38,8 @@ TEST(GivenArrival, IsMetAndSmootherThanTheSoonest) {
 
 TEST(GivenArrival, TooSoonIsRefusedWithTheSoonest) {
   auto optimizer = default_optimizer();
-  const auto solution = from_rest(optimizer, test::straight_corridor(8.0), {}, {.duration_s = 3.0});
+  const auto solution =
+      answer_from_rest(optimizer, test::straight_corridor(8.0), {}, {.duration_s = 3.0});
   ASSERT_FALSE(solution);
   EXPECT_EQ(solution.code(), ErrorCode::trajectory_infeasible);
   EXPECT_NE(solution.error().message.find("soonest"), std::string::npos);
@@ -48,7 +49,7 @@ TEST(GivenArrival, NonsenseIsRefused) {
   auto optimizer = default_optimizer();
   for (const double bad : {-1.0, double(NAN), HUGE_VAL, 1e9}) {
     const auto solution =
-        from_rest(optimizer, test::straight_corridor(8.0), {}, {.duration_s = bad});
+        answer_from_rest(optimizer, test::straight_corridor(8.0), {}, {.duration_s = bad});
     ASSERT_FALSE(solution);
     EXPECT_EQ(solution.code(), ErrorCode::invalid_input);
   }
@@ -98,11 +99,11 @@ TEST(Deadline, EndsTheWork) {
   const auto corridor = test::random_corridor(random, {});
   int asked = 0;
   const auto solution =
-      from_rest(optimizer, corridor, {}, {.out_of_time = [&] { return ++asked > 3; }});
+      answer_from_rest(optimizer, corridor, {}, {.out_of_time = [&] { return ++asked > 3; }});
   ASSERT_FALSE(solution);
   EXPECT_EQ(solution.code(), ErrorCode::deadline_exceeded);
   EXPECT_EQ(asked, 4);
-  EXPECT_TRUE(from_rest(optimizer, corridor, {}));
+  EXPECT_TRUE(answer_from_rest(optimizer, corridor, {}));
 }
 
 TEST(JerkLimit, HoldsOnTheCurveAndCostsTime) {
@@ -112,8 +113,8 @@ TEST(JerkLimit, HoldsOnTheCurveAndCostsTime) {
     SCOPED_TRACE(i);
     const auto corridor = test::random_corridor(random, {});
     const Limits limits{.j_max_m_s3 = random.uniform(2.0, 40.0)};
-    const auto free = from_rest(optimizer, corridor, {});
-    const auto solution = from_rest(optimizer, corridor, limits);
+    const auto free = answer_from_rest(optimizer, corridor, {});
+    const auto solution = answer_from_rest(optimizer, corridor, limits);
     ASSERT_TRUE(free && solution) << solution.error().message;
     EXPECT_TRUE(solution->certificate.holds());
     EXPECT_LE(solution->certificate.jerk_m_s3, 1e-6);
@@ -130,7 +131,7 @@ TEST(JerkLimit, IsNearlyTimeOptimalOnALongStraightLine) {
   // Rest to rest with |j| <= j: ramps of a_max / j at each end of each acceleration.
   const Limits limits{.j_max_m_s3 = 4.0};
   const double least_s = 10.0 / 2.0 + 2.0 / 2.0 + 2.0 / 4.0;
-  const auto solution = from_rest(optimizer, test::straight_corridor(10.0), limits);
+  const auto solution = answer_from_rest(optimizer, test::straight_corridor(10.0), limits);
   ASSERT_TRUE(solution) << solution.error().message;
   EXPECT_GE(solution->trajectory.duration_s(), least_s * (1.0 - 1e-9));
   EXPECT_LE(solution->trajectory.duration_s(), 1.08 * least_s);
@@ -147,7 +148,7 @@ TEST(HorizontalAndVertical, EachHasItsOwnLimit) {
                         .norm = LimitNorm::horizontal_vertical,
                         .v_max_vertical_m_s = random.uniform(0.3, 4.0),
                         .a_max_vertical_m_s2 = random.uniform(0.3, 4.0)};
-    const auto solution = from_rest(optimizer, corridor, limits);
+    const auto solution = answer_from_rest(optimizer, corridor, limits);
     ASSERT_TRUE(solution) << solution.error().message;
     EXPECT_TRUE(solution->certificate.holds());
     for (int s = 0; s <= 500; ++s) {
@@ -166,7 +167,7 @@ TEST(HorizontalAndVertical, ASlowClimbTakesItsTime) {
   corridor.waypoints_map = {Vec3::Zero(), Vec3(0, 0, 4)};
   corridor.polytopes = {Polytope::box(Vec3(-1, -1, -1), Vec3(1, 1, 5))};
   const Limits limits{.norm = LimitNorm::horizontal_vertical, .v_max_vertical_m_s = 0.5};
-  const auto solution = from_rest(optimizer, corridor, limits);
+  const auto solution = answer_from_rest(optimizer, corridor, limits);
   ASSERT_TRUE(solution) << solution.error().message;
   EXPECT_GE(solution->trajectory.duration_s(), 8.0);
   EXPECT_LE(solution->trajectory.duration_s(), 9.0);

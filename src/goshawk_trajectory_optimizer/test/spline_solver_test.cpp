@@ -5,94 +5,34 @@
 #include <cmath>
 #include <cstdint>
 
-#include "corridor_maker.hpp"
-#include "goshawk/trajectory_optimizer/plan.hpp"
+#include "goshawk/trajectory_optimizer/active_set_solver.hpp"
 #include "ipopt_reference.hpp"
+#include "random_instance.hpp"
 
 namespace goshawk::trajectory_optimizer {
 namespace {
 
 using test::at_rest;
+using test::difference;
+using test::Instance;
+using test::random_instance;
 
-struct Instance {
-  Corridor corridor;
-  FlatState start, goal;
-  Limits limits;
-  Plan plan;
-  SplineProblem problem;
-  Units units;
-  bool inside = true;  // of what the ends alone decide
-
-  Request request() const { return {corridor, start, goal, limits}; }
-  std::vector<Polytope> polytopes_in_units() const {
-    std::vector<Polytope> all;
-    for (const int k : plan.polytopes) {
-      Polytope p = corridor.polytopes[std::size_t(k)];
-      p.b = (p.b - p.A * units.origin_map) / units.length_m;
-      all.push_back(p);
-    }
-    return all;
-  }
-};
-
-// A limit of a random kind.
-Limits random_limits(Random& random) {
-  Limits limits{.v_max_m_s = random.uniform(0.5, 4.0), .a_max_m_s2 = random.uniform(0.5, 4.0)};
-  constexpr LimitNorm kNorms[] = {LimitNorm::euclidean, LimitNorm::per_axis,
-                                  LimitNorm::horizontal_vertical};
-  limits.norm = kNorms[random.below(3)];
-  if (limits.norm == LimitNorm::horizontal_vertical) {
-    limits.v_max_vertical_m_s = random.uniform(0.3, 2.0);
-    limits.a_max_vertical_m_s2 = random.uniform(0.3, 2.0);
-  }
-  return limits;
-}
-
-// With fixed durations some fly already.
-Instance random_instance(Random& random, bool scale, double stretch) {
-  Instance i;
-  test::CorridorKind kind;
-  kind.segments = 1 + random.below(2);
-  kind.planes = 6 + random.below(5);
-  kind.least_length_m = 0.3;
-  kind.most_length_m = 1.5;
-  i.corridor = test::random_corridor(random, kind);
-  i.start = at_rest(i.corridor.waypoints_map.front());
-  i.goal = at_rest(i.corridor.waypoints_map.back());
-  i.limits = random_limits(random);
-  if (!scale && random.chance(0.3)) {
-    i.start.velocity = random.uniform(0.0, 0.3) * test::random_direction(random);
-    i.start.acceleration = random.uniform(0.0, 0.3) * test::random_direction(random);
-  }
-  Config config;
-  config.min_pieces = 2;
-  config.piece_duration_s = random.uniform(2.0, 10.0);
-  i.plan = cut_trapezoid(i.request(), config);
-  for (double& duration : i.plan.durations_s) duration *= stretch * random.uniform(0.8, 1.25);
-  i.inside = make_problem(i.request(), i.plan, scale, std::pow(10.0, random.uniform(-2.0, 2.0)),
-                          HUGE_VAL, i.problem, i.units);
-  return i;
-}
-
-double difference(const std::vector<Joint>& a, const std::vector<Joint>& b) {
-  double largest = 0.0;
-  for (std::size_t k = 0; k < a.size(); ++k) {
-    largest = std::max(largest, (a[k].col(0) - b[k].col(0)).cwiseAbs().maxCoeff());
-  }
-  return largest;
-}
-
-// Every instance is decided, and as Ipopt decides.
+// Every instance is decided, and as Ipopt decides; so are most by the active set.
 TEST(SplineSolver, FixedDurationsGiveIpoptsObjectiveAndSolution) {
   Random random(5);
   SplineSolver solver;
-  int compared = 0, infeasible = 0;
+  ActiveSetSolver active_set;
+  int compared = 0, infeasible = 0, by_active_set = 0;
   for (int n = 0; n < 800; ++n) {
     SCOPED_TRACE(n);
     const auto instance = random_instance(random, false, random.uniform(1.0, 3.0));
     if (!instance.inside) continue;
     // Flat optima: the solution is as near as the square root of the gap.
     const auto outcome = solver.solve(instance.problem, {.gap = 1e-10});
+    const auto other = active_set.solve(instance.problem, {.gap = 1e-10});
+    const bool decided = ActiveSetSolver::decided(other);
+    if (decided) ++by_active_set;
+    EXPECT_TRUE(!decided || other.status == outcome.status);
     const auto polytopes = instance.polytopes_in_units();
     if (outcome.status == SplineSolver::Status::infeasible) {
       ++infeasible;
@@ -110,9 +50,16 @@ TEST(SplineSolver, FixedDurationsGiveIpoptsObjectiveAndSolution) {
     EXPECT_LT(difference(solver.joints(), truth.joints), 1e-3);
     EXPECT_LE(outcome.primal_residual, 1e-9);
     EXPECT_LE(outcome.gap, 1e-10 * outcome.objective + 1e-12);
+    if (!decided) continue;
+    EXPECT_NEAR(other.objective, truth.objective, 1e-6 * (1.0 + std::abs(truth.objective)));
+    EXPECT_LT(difference(active_set.joints(), truth.joints), 1e-3);
+    EXPECT_LE(other.primal_residual, 1e-9);
+    EXPECT_LE(other.dual_residual, 1e-7);
+    EXPECT_LE(other.gap, 1e-10 * other.objective + 1e-12);
   }
   EXPECT_GE(compared, 700);
   EXPECT_GE(infeasible, 10);
+  EXPECT_GE(by_active_set, 750);
 }
 
 TEST(SplineSolver, TimeAndShapeTogetherGiveIpoptsObjectiveAndTimeScale) {

@@ -1,15 +1,16 @@
 #include <spdlog/spdlog.h>
 #include <algorithm>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 #include <thread>
 
+#include "foxglove_times.hpp"
 #include "goshawk/introspection/codec.hpp"
 #include "goshawk/introspection/schema.hpp"
 #include "goshawk/runtime/component.hpp"
 #include "goshawk/runtime/stage_reporter.hpp"
-#include "goshawk/viewer_bridge/client_json.hpp"
 #include "goshawk/viewer_bridge/server.hpp"
 
 namespace goshawk::viewer_bridge {
@@ -28,7 +29,7 @@ requires std::same_as<std::remove_const_t<Self>, Config>
 void describe(Self& c, Visitor&& visit) {
   visit("address", c.address, "", "IPv4 address to listen on; who can reach it can send goals",
         Anything{});
-  visit("port", c.port, "", "TCP port to listen on", Range{1, 65535});
+  visit("port", c.port, "", "TCP port to listen on; 0: any that is free", Range{0, 65535});
   visit("origins", c.origins, "",
         "web pages that may connect beside local ones and Foxglove's, with commas, or any",
         Anything{});
@@ -242,9 +243,11 @@ class ViewerBridgeComponent : public Component {
       if (auto json = introspection::cdr_to_json(type, event.bytes); !json) return json.error();
       return event.bytes;
     }
-    auto json = client_json(event.bytes);
-    if (!json) return json.error();
-    return introspection::json_to_cdr(type, *json);
+    auto json =
+        nlohmann::ordered_json::parse(event.bytes.begin(), event.bytes.end(), nullptr, false);
+    rename_nanoseconds(json);
+    if (json.is_discarded()) return fail(ErrorCode::invalid_input, "this is no JSON");
+    return introspection::json_to_cdr(type, json);
   }
 
   Node& node_;

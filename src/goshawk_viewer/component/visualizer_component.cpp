@@ -16,9 +16,9 @@ template <typename Self, typename Visitor>
 requires std::same_as<std::remove_const_t<Self>, VisualizerConfig>
 void describe(Self& c, Visitor&& visit) {
   visit("most_cubes", c.most_cubes, "", "voxels drawn at most; of more, every n-th is left",
-        Range{1, 10000000});
+        AtRunTime{Range{1, 10000000}});
   visit("track_step_m", c.track_step_m, "m", "between points of the flown track",
-        Range{0.001, 10.0});
+        AtRunTime{Range{0.001, 10.0}});
 }
 
 namespace {
@@ -34,7 +34,10 @@ class VisualizerComponent : public Component {
  public:
   explicit VisualizerComponent(Node& node)
       : node_(node),
-        config_(node.parameters<VisualizerConfig>()),
+        config_(node.parameters<VisualizerConfig>([this](const VisualizerConfig& c) {
+          config_ = c;  // of the pictures to come
+          return success();
+        })),
         reporter_(node, "markers"),
         obstacles_(node.advertise<MarkerArray>("view/obstacles", Qos::latched())),
         plan_(node.advertise<MarkerArray>("view/plan", Qos::latched())),

@@ -40,7 +40,7 @@ async function lookAtIt() {
   check(Math.max(...tilts) > 0.02, `it tilts to accelerate: ${Math.max(...tilts).toFixed(3)}`);
 
   // Play moves it by itself, and ends.
-  await slide(0.2);
+  await slide(0.8);
   await page.click('#play');
   const ended = await page.waitForFunction(() => goshawk.now >= goshawk.end && !goshawk.playing, null,
                                            {timeout: kPatience}).then(() => true, () => false);

@@ -2,6 +2,7 @@
 
 #include <limits>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "goshawk/core/result.hpp"
@@ -37,6 +38,20 @@ struct OneOf {
 /// Anything of the right type (finite, for numbers).
 struct Anything {};
 
+/// Around one of the above: the value may change while the program runs, between two requests
+/// (docs/adr/0008-parameters-at-run-time.md). All others hold from start to end.
+///
+///     visit("z_weight", config.z_weight, "", "what climbing costs", AtRunTime{Range{0.0, 1e3}});
+template <typename Allowed>
+struct AtRunTime : Allowed {};
+template <typename Allowed>
+AtRunTime(Allowed) -> AtRunTime<Allowed>;
+
+template <typename Allowed>
+inline constexpr bool is_at_run_time = false;
+template <typename Allowed>
+inline constexpr bool is_at_run_time<AtRunTime<Allowed>> = true;
+
 /// The visitor that checks a config struct in the program: it collects every value that lies
 /// outside of what describe() allows, and whatever else is wrong.
 ///
@@ -63,5 +78,25 @@ class ParameterFaults {
  private:
   std::string text_;
 };
+
+/// Whether a config may follow on another while the program runs.
+/// @return invalid_parameter that names each parameter which differs and is not AtRunTime
+template <typename Config>
+Status check_change(const Config& from, const Config& to) {
+  using Value = std::variant<bool, int, double, std::string>;
+  std::vector<Value> before;
+  describe(from, [&](const char*, const auto& value, const char*, const char*, const auto&) {
+    before.emplace_back(value);
+  });
+  std::string fixed;
+  std::size_t i = 0;
+  describe(to, [&]<typename Allowed>(const char* name, const auto& value, const char*, const char*,
+                                     const Allowed&) {
+    const bool same = before[i++] == Value(value);
+    if (!same && !is_at_run_time<Allowed>) fixed += (fixed.empty() ? "" : ", ") + std::string(name);
+  });
+  if (fixed.empty()) return success();
+  return fail(ErrorCode::invalid_parameter, fixed + " cannot change at run time: start anew");
+}
 
 }  // namespace goshawk

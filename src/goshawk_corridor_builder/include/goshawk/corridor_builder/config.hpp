@@ -27,7 +27,7 @@ void describe(Self& config, Visitor&& visit) {
   visit(
       "generator", config.generator, "",
       "ellipsoid: inflation of an ellipsoid, largest polytopes; box: axis-aligned boxes, cheapest",
-      OneOf{{"ellipsoid", "box"}});
+      AtRunTime{OneOf{{"ellipsoid", "box"}}});
   visit("margin", config.margin, "",
         "how the vehicle's size is kept: grown_grid (planes before the grown voxels) or sphere "
         "(planes that a sphere of the same radius touches before the voxels as they are: larger "
@@ -35,27 +35,28 @@ void describe(Self& config, Visitor&& visit) {
         OneOf{{"grown_grid", "sphere"}});
   visit("local_box_m", config.local_box_m, "m",
         "how far a polytope may reach beyond the axis-aligned box of its segment",
-        Range{0.0, 100.0, true});
+        AtRunTime{Range{0.0, 100.0, true}});
   visit("max_segment_m", config.max_segment_m, "m",
-        "path segments longer than this are split into equal parts", Range{0.01, 1000.0});
+        "path segments longer than this are split into equal parts",
+        AtRunTime{Range{0.01, 1000.0}});
   visit("growth_passes", config.growth_passes, "",
         "how often, at most, a polytope is built anew around its inscribed ellipsoid; it ends "
         "early where that has hardly grown",
-        Range{0.0, 10.0});
+        AtRunTime{Range{0.0, 10.0}});
   visit("max_faces", config.max_faces, "",
         "a polytope with more faces is built again in a local box of half the reach, at most "
         "three times; the one with the fewest faces is taken",
-        Range{6.0, 1000.0});
+        AtRunTime{Range{6.0, 1000.0}});
   visit("bend_path", config.bend_path, "",
         "bend the path away from obstacles that it grazes, so that consecutive polytopes share a "
         "ball of half a voxel (ellipsoid)",
-        Anything{});
+        AtRunTime{Anything{}});
   visit("joint_clearance_voxels", config.joint_clearance_voxels, "voxel",
         "how far joints between polytopes are kept from faces where there is room",
-        Range{0.0, 100.0});
+        AtRunTime{Range{0.0, 100.0}});
   visit("drop_covered", config.drop_covered, "",
         "leave out polytopes whose neighbours share a ball that is as good without them",
-        Anything{});
+        AtRunTime{Anything{}});
 }
 
 }  // namespace goshawk::corridor_builder

@@ -41,6 +41,9 @@ class CorridorBuilder {
   /// @return invalid_parameter, with every fault of the config in one sentence
   static Result<CorridorBuilder> create(const Config& config);
 
+  /// From the next path on by this config; or, where create() would refuse it, as before.
+  Status reconfigure(const Config& config);
+
   CorridorBuilder(CorridorBuilder&&) noexcept;
   CorridorBuilder& operator=(CorridorBuilder&&) noexcept;
   ~CorridorBuilder();

@@ -52,7 +52,7 @@ void describe(Self& c, Visitor&& visit) {
         "scan (the rays from the origin are free)",
         OneOf{{"map", "points", "scan"}});
   visit("max_range_m", c.max_range_m, "m", "longest ray of a scan that may hit something",
-        Range::positive(1000.0));
+        AtRunTime{Range::positive(1000.0)});
   visit("use_box", c.use_box, "", "cut the map to the box; needed where map_file is empty",
         Anything{});
   visit("box_x_min_m", c.box_x_min_m, "m", "lower corner of the box", Anything{});

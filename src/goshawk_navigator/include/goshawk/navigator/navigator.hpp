@@ -49,6 +49,10 @@ class Navigator {
   /// @param first_id number of the first request, above 0: unique over restarts
   Navigator(const Config& config, std::uint64_t first_id);
 
+  /// What is open or flown goes on; limits and leads hold from the next request on.
+  /// @return invalid_parameter: out of range, or what cannot change at run time; then as before
+  Status reconfigure(const Config& config);
+
   /// @param yaw_rad heading at the goal, map x to y @return invalid_input where not finite
   Status on_goal(const Vec3& goal_map, double yaw_rad, std::int64_t now_ns);
   void on_odometry(const Vec3& position_map, const Vec3& velocity_map, std::int64_t now_ns);

@@ -43,49 +43,55 @@ void describe(Self& c, Visitor&& visit) {
   visit("planner", c.planner, "",
         "grid search: jastar (fastest, exact), astar (octile heuristic), astar_euclidean, "
         "astar_manhattan (fast, not exact) or dijkstra; by sampling (OMPL): rrt, rrtstar or prm",
-        OneOf{{"jastar", "astar", "astar_euclidean", "astar_manhattan", "dijkstra", "rrt",
-               "rrtstar", "prm"}});
+        AtRunTime{OneOf{{"jastar", "astar", "astar_euclidean", "astar_manhattan", "dijkstra", "rrt",
+                         "rrtstar", "prm"}}});
   visit("corner_rule", c.corner_rule, "",
         "no_squeeze: every voxel of the box that a move spans is free, as a corridor needs; "
         "squeeze: only the target voxel is, so paths may touch obstacle edges",
-        OneOf{{"no_squeeze", "squeeze"}});
+        AtRunTime{OneOf{{"no_squeeze", "squeeze"}}});
   visit("pruning", c.pruning, "",
         "waypoints: shortest (shortest polyline over the path's own nodes), relaxed (that, pulled "
         "tight off the voxel centres: shorter, but along obstacles), greedy (farthest visible "
         "node) or none",
-        OneOf{{"shortest", "relaxed", "greedy", "none"}});
+        AtRunTime{OneOf{{"shortest", "relaxed", "greedy", "none"}}});
   visit("time_limit_s", c.time_limit_s, "s",
-        "longest search; a request's own deadline may be shorter", Range::positive(1e6));
+        "longest search; a request's own deadline may be shorter", AtRunTime{Range::positive(1e6)});
   visit("move_within_m", c.move_within_m, "m",
         "a start or goal in an obstacle is moved to the nearest free voxel up to this far; 0: it "
         "is refused",
-        Range{0.0, 100.0});
+        AtRunTime{Range{0.0, 100.0}});
   visit("nearest_reachable", c.nearest_reachable, "",
-        "where every goal is cut off, plan to the reachable voxel nearest to one", Anything{});
+        "where every goal is cut off, plan to the reachable voxel nearest to one",
+        AtRunTime{Anything{}});
   visit("search_box", c.search_box, "m",
-        "limits the search: x0,y0,z0,x1,y1,z1 in frame map; empty: the whole map", Anything{});
+        "limits the search: x0,y0,z0,x1,y1,z1 in frame map; empty: the whole map",
+        AtRunTime{Anything{}});
   visit("z_weight", c.z_weight, "", "each metre of climb costs as much as so many metres of path",
-        Range{0.0, 1e3});
+        AtRunTime{Range{0.0, 1e3}});
   visit("unknown", c.unknown, "",
         "space never measured: as_mapped, blocked, free, or costly; the last two ask for a map "
         "that leaves it free (map_server: unknown: free)",
-        OneOf{{"as_mapped", "blocked", "free", "costly"}});
+        AtRunTime{OneOf{{"as_mapped", "blocked", "free", "costly"}}});
   visit("unknown_weight", c.unknown_weight, "",
-        "where unknown is costly: a move into it costs 1 + this times its length", Range{0.0, 1e3});
+        "where unknown is costly: a move into it costs 1 + this times its length",
+        AtRunTime{Range{0.0, 1e3}});
   visit("clearance_m", c.clearance_m, "m",
-        "voxels nearer than this to a blocked one cost more; 0: off", Range{0.0, 10.0});
+        "voxels nearer than this to a blocked one cost more; 0: off", AtRunTime{Range{0.0, 10.0}});
   visit("clearance_weight", c.clearance_weight, "",
         "a move beside a blocked voxel costs 1 + this times its length, falling to 1 at "
         "clearance_m",
-        Range{0.0, 1e3});
+        AtRunTime{Range{0.0, 1e3}});
   visit("validity", c.validity, "",
         "rrt, rrtstar, prm: what says that a segment is free: grid (exact line of sight) or fcl "
         "(collision checks of the Flexible Collision Library; slower, for comparisons)",
-        OneOf{{"grid", "fcl"}});
+        AtRunTime{OneOf{{"grid", "fcl"}}});
   visit("max_iterations", c.max_iterations, "",
-        "rrt, rrtstar, prm: samples before giving up (rrt) or being content", Range{1.0, 1e8});
-  visit("step_m", c.step_m, "m", "rrt, rrtstar: longest edge of the tree", Range::positive(1e3));
-  visit("seed", c.seed, "", "rrt, rrtstar, prm: the same seed gives the same path", Range{0, 1e9});
+        "rrt, rrtstar, prm: samples before giving up (rrt) or being content",
+        AtRunTime{Range{1.0, 1e8}});
+  visit("step_m", c.step_m, "m", "rrt, rrtstar: longest edge of the tree",
+        AtRunTime{Range::positive(1e3)});
+  visit("seed", c.seed, "", "rrt, rrtstar, prm: the same seed gives the same path",
+        AtRunTime{Range{0, 1e9}});
 }
 
 }  // namespace goshawk::path_search

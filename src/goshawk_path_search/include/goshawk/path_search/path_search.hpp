@@ -49,6 +49,10 @@ class PathSearch {
   /// @return invalid_parameter for what Config does not allow
   static Result<PathSearch> create(const Config& config);
 
+  /// From the next query on by this config, on the map that is there; or as before.
+  /// @return invalid_parameter, or why the map that is there cannot be searched like that
+  Status reconfigure(const Config& config);
+
   /// The map is kept, and must not change afterwards. A null or malformed map is reported by
   /// plan().
   void set_map(std::shared_ptr<const VoxelGrid> map);
@@ -80,6 +84,7 @@ class PathSearch {
   std::optional<SearchBox> box_;
   PathPruner pruner_;
   double planner_resolution_m_ = 0.0;
+  std::shared_ptr<const VoxelGrid> given_map_;
   std::shared_ptr<const VoxelGrid> map_;  // as make_search_map() has it
   Error map_error_{ErrorCode::no_map, "no map yet: wait for one, or load one, before planning"};
 

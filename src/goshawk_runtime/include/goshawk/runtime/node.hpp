@@ -8,6 +8,7 @@
 
 #include "goshawk/runtime/clock.hpp"
 #include "goshawk/runtime/context.hpp"
+#include "goshawk/runtime/live_parameters.hpp"
 #include "goshawk/runtime/lock_step.hpp"
 #include "goshawk/runtime/message_type.hpp"
 #include "goshawk/runtime/parameters.hpp"
@@ -34,6 +35,7 @@ class StartupFault : public std::runtime_error {
 
 struct MessageInfo {
   std::int64_t received_ns = 0;  // [ns] clock of the node, when its thread took the message
+  std::int64_t sent_ns = 0;      // [ns] the sender's system clock, when it was published
 };
 
 namespace detail {
@@ -79,10 +81,14 @@ class Node {
   std::int64_t now_ns() const;
   spdlog::logger& log() { return *log_; }
 
-  /// Also turns to simulated time or lock step, where the user asks for it.
+  /// Also turns to simulated time or lock step, where the user asks for it; and from here on the
+  /// node answers on /parameter_answer what is asked of it on /parameter_request.
+  /// @param reconfigure called between two callbacks with a config that differs in what is marked
+  /// AtRunTime, is in range, and is to be taken on whole or refused with a sentence. Without it
+  /// nothing can change at run time
   /// @throws StartupFault that lists every fault
   template <typename Config>
-  Config parameters() {
+  Config parameters(std::function<Status(const Config&)> reconfigure = {}) {
     auto source = args_.parameters_of(name_);
     if (!source) throw StartupFault(source.error());
     TimeParameters time;
@@ -93,6 +99,7 @@ class Node {
     } else if (time.use_sim_time) {
       use_simulated_time();
     }
+    serve(std::make_unique<LiveConfig<Config>>(*config, name_, std::move(reconfigure)));
     return *std::move(config);
   }
 
@@ -140,6 +147,7 @@ class Node {
  private:
   std::shared_ptr<detail::Writer> make_writer(std::string_view topic, const MessageType& type,
                                               Qos qos);
+  void serve(std::unique_ptr<LiveParameters> parameters);
   void take_turn(const void* message);
   struct Impl;
 

@@ -29,6 +29,9 @@ class ParameterSource {
   Status add_file(const std::string& path, std::string_view node_name,
                   std::string_view node_namespace);
 
+  /// One value as a user writes it behind `name:=`; in quotes it is a string in any case.
+  static Entry written(const std::string& value, const std::string& origin);
+
   void set(const std::string& name, Entry entry) { entries_[name] = std::move(entry); }
   const std::map<std::string, Entry>& entries() const { return entries_; }
 
@@ -48,7 +51,9 @@ struct ParameterDescription {
   std::string unit;  // empty where it has none
   std::string text;
   std::string default_value;
-  std::string range;  // in words, empty where anything goes
+  std::string range;         // in words, empty where anything goes
+  std::string value;         // of the struct that was described
+  bool at_run_time = false;  // may change while the node runs
 };
 
 /// @return the name among `known` that a user most likely meant, or empty
@@ -81,10 +86,14 @@ inline std::string to_text(const Anything&) {
   return "";
 }
 
+/// Which parameters may be given: all at start, those AtRunTime later, or none any more.
+enum class Changeable { at_start, at_run_time, no };
+
 /// Collects every fault of a node's parameters before anything is said.
 class Reader {
  public:
-  explicit Reader(const ParameterSource& source) : source_(source) {}
+  explicit Reader(const ParameterSource& source, Changeable changeable = Changeable::at_start)
+      : source_(source), changeable_(changeable) {}
 
   template <typename T, typename Allowed>
   void operator()(const char* name, T& value, const char*, const char*, const Allowed& allowed) {
@@ -93,6 +102,7 @@ class Reader {
     if (entry == source_.entries().end()) return;
     T parsed = value;
     std::string fault = entry->second.fault;
+    if (fault.empty()) fault = change_fault(name, entry->second, is_at_run_time<Allowed>);
     if (fault.empty()) fault = parse(entry->second, parsed);
     if (fault.empty()) fault = range_fault(parsed, allowed);
     if (fault.empty()) {
@@ -108,8 +118,11 @@ class Reader {
  private:
   void add_fault(const std::string& name, const ParameterSource::Entry& entry,
                  const std::string& fault);
+  std::string change_fault(const std::string& name, const ParameterSource::Entry& entry,
+                           bool at_run_time) const;
 
   const ParameterSource& source_;
+  Changeable changeable_;
   std::vector<std::string> known_;
   std::vector<std::string> faults_;
 };
@@ -137,11 +150,12 @@ struct TimeParameters {
 /// Fills a config struct, strictly: an unknown name, a wrong type or a value out of range is a
 /// fault, and the error (invalid_parameter) lists all of them, one a line.
 /// @param time where the parameters of every node go, if they are wanted
+/// @param config what holds where the source says nothing
 template <typename Config>
 Result<Config> read_parameters(const ParameterSource& source, std::string_view node_name,
-                               TimeParameters* time = nullptr) {
-  Config config;
-  detail::Reader reader(source);
+                               TimeParameters* time = nullptr, Config config = {},
+                               detail::Changeable changeable = detail::Changeable::at_start) {
+  detail::Reader reader(source, changeable);
   describe(config, reader);
   TimeParameters ignored;
   TimeParameters& t = time != nullptr ? *time : ignored;
@@ -151,17 +165,28 @@ Result<Config> read_parameters(const ParameterSource& source, std::string_view n
   return config;
 }
 
+/// @param config whose values are told beside the defaults
 template <typename Config>
-std::vector<ParameterDescription> describe_parameters() {
+std::vector<ParameterDescription> describe_parameters(const Config& config) {
   std::vector<ParameterDescription> list;
   const Config defaults;
   describe(defaults, [&](const char* name, const auto& value, const char* unit, const char* text,
                          const auto& allowed) {
     using T = std::remove_cvref_t<decltype(value)>;
+    using Allowed = std::remove_cvref_t<decltype(allowed)>;
     list.push_back({name, detail::type_name<T>(), unit, text, detail::to_text(value),
-                    detail::to_text(allowed)});
+                    detail::to_text(allowed), "", is_at_run_time<Allowed>});
+  });
+  std::size_t i = 0;
+  describe(config, [&](const char*, const auto& value, const char*, const char*, const auto&) {
+    list[i++].value = detail::to_text(value);
   });
   return list;
+}
+
+template <typename Config>
+std::vector<ParameterDescription> describe_parameters() {
+  return describe_parameters(Config{});
 }
 
 }  // namespace goshawk::runtime

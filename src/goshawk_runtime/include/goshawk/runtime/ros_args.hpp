@@ -3,7 +3,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "goshawk/core/result.hpp"
@@ -12,7 +11,8 @@
 namespace goshawk::runtime {
 
 /// What stands behind `--ros-args`, as ROS 2 users know it:
-///   -r from:=to           remap a topic; __ns:=/uav1 the namespace, __node:=name the node
+///   -r from:=to           remap a topic (`-r node:from:=to` for one node of several);
+///                         __ns:=/uav1 the namespace, __node:=name the node
 ///   -p name:=value        one parameter (`-p node:name:=value` for one node of several)
 ///   --params-file FILE    parameters of one or many nodes
 ///   --log-level LEVEL     trace, debug, info, warn, error, off
@@ -20,7 +20,12 @@ struct RosArgs {
   std::string node_namespace = "/";
   std::string node_name;  // empty: the component's own name
   std::string log_level = "info";
-  std::vector<std::pair<std::string, std::string>> remaps;
+  struct Remap {
+    std::string from;
+    std::string to;
+    std::string node = {};  // empty: any node
+  };
+  std::vector<Remap> remaps;
   std::vector<std::string> params_files;
 
   struct Override {
@@ -38,7 +43,8 @@ struct RosArgs {
   Result<ParameterSource> parameters_of(std::string_view name) const;
 
   /// A topic's full name: remapped, then put under the namespace unless it begins with '/'.
-  std::string resolve_topic(std::string_view topic) const;
+  /// @param node whose topic it is: what is remapped for others does not count
+  std::string resolve_topic(std::string_view topic, std::string_view node = {}) const;
 };
 
 /// @return invalid_input unless the name is of letters, digits, '_' and '/', as ROS demands

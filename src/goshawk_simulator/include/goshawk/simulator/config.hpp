@@ -106,11 +106,11 @@ void describe(Self& c, Visitor&& visit) {
   visit("land_height_m", c.land_height_m, "m",
         "height in the map at which a landing ends: the ground, plus the legs", Anything{});
   describe(c.sensor, visit);
-  visit("wind_x_m_s", c.wind_x_m_s, "m/s", "constant wind towards map x", wind);
-  visit("wind_y_m_s", c.wind_y_m_s, "m/s", "constant wind towards map y", wind);
-  visit("wind_z_m_s", c.wind_z_m_s, "m/s", "constant wind upwards", wind);
+  visit("wind_x_m_s", c.wind_x_m_s, "m/s", "constant wind towards map x", AtRunTime{wind});
+  visit("wind_y_m_s", c.wind_y_m_s, "m/s", "constant wind towards map y", AtRunTime{wind});
+  visit("wind_z_m_s", c.wind_z_m_s, "m/s", "constant wind upwards", AtRunTime{wind});
   visit("gust_deviation_m_s", c.gust_deviation_m_s, "m/s",
-        "standard deviation of the gusts on each axis; 0 for none", Range{0.0, 10.0});
+        "standard deviation of the gusts on each axis; 0 for none", AtRunTime{Range{0.0, 10.0}});
   visit("gust_time_s", c.gust_time_s, "s", "correlation time of the gusts", Range{0.01, 100.0});
   visit("gust_seed", c.gust_seed, "", "the same seed, the same gusts", Range{0.0, 2147483647.0});
 }

@@ -51,7 +51,8 @@ class PlantComponent : public runtime::Component {
  public:
   PlantComponent(runtime::Node& node, const PlantFactory& make_plant)
       : node_(node),
-        config_(node.parameters<ComponentConfig>()),
+        config_(node.parameters<ComponentConfig>(
+            [this](const ComponentConfig& c) { return reconfigure(c); })),
         quadrotor_(make_quadrotor(config_, make_plant)),
         reporter_(node, quadrotor_.plant_name()),
         odometry_(node.advertise<nav_msgs::msg::Odometry>("odom", runtime::Qos::best_effort())),
@@ -84,6 +85,12 @@ class PlantComponent : public runtime::Component {
                                    config.start_yaw_rad);
     if (!status) throw runtime::StartupFault(status.error());
     return *std::move(quadrotor);
+  }
+
+  Status reconfigure(const ComponentConfig& config) {
+    if (auto status = quadrotor_.reconfigure(config.plant); !status) return status;
+    config_ = config;
+    return success();
   }
 
   void on_command(const goshawk_msgs::msg::ThrustAttitude& m, const runtime::MessageInfo& info) {

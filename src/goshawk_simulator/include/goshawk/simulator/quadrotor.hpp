@@ -35,6 +35,10 @@ class Quadrotor {
   static Result<Quadrotor> create(const Config& config,
                                   const PlantFactory& make_plant = make_rigid_body);
 
+  /// The wind may change in flight, nothing else.
+  /// @return invalid_parameter: as create(), or for another part of the config; then as before
+  Status reconfigure(const Config& config);
+
   /// Hover at rest with the motors at hover speed; commands, failsafe and gusts begin anew, time
   /// runs on. @return invalid_input when not finite
   Status reset(const Vec3& position_map, double yaw_rad);

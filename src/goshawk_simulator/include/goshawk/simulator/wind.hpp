@@ -20,6 +20,11 @@ class Wind {
   Wind(const Parameters& parameters, double step_s);
 
   void step();
+  /// From the next step on; gusts grow or die down to the new deviation with their own time.
+  void change(const Vec3& mean_map, double gust_deviation_m_s) {
+    mean_map_ = mean_map;
+    deviation_m_s_ = gust_deviation_m_s;
+  }
   Vec3 velocity_map() const { return mean_map_ + gust_map_; }
 
  private:

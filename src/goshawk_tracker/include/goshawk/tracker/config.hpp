@@ -108,14 +108,14 @@ void describe_safety(Self& c, Visitor& visit) {
         "deceleration of the reference when it brakes along its path", Range{0.1, 20.0});
   visit("navigator_timeout_s", c.navigator_timeout_s, "s",
         "a navigator that was heard once and then is silent for this long is lost",
-        Range{0.1, 3600.0});
+        AtRunTime{Range{0.1, 3600.0}});
   visit("landing", c.landing, "",
         "without a navigator: land where the map shows the way straight down free (map), as if it "
         "were free everywhere (anywhere), or never",
         OneOf{{"map", "anywhere", "never"}});
   visit("land_after_s", c.land_after_s, "s",
         "without a navigator: how long the vehicle holds at rest before it lands",
-        Range{0.0, 3600.0});
+        AtRunTime{Range{0.0, 3600.0}});
   visit("land_speed_m_s", c.land_speed_m_s, "m/s", "fastest descent of a landing",
         Range{0.05, 2.0});
   visit("land_height_m", c.land_height_m, "m",
@@ -133,7 +133,7 @@ void describe(Self& c, Visitor&& visit) {
   visit("yaw", c.yaw, "",
         "plan: the trajectory's yaw, over time where it has a curve; keep: the yaw at the first "
         "odometry",
-        OneOf{{"plan", "keep"}});
+        AtRunTime{OneOf{{"plan", "keep"}}});
   detail::describe_vehicle(c, visit);
   detail::describe_gains(c, visit);
   detail::describe_safety(c, visit);

@@ -79,6 +79,11 @@ class Tracker {
   /// The navigator is lost, the vehicle is at rest, and there is no map yet.
   bool needs_map() const;
 
+  /// What may change in flight: nothing that the force on the vehicle, what is admitted, or when
+  /// it brakes depend on. A new yaw is turned to at the old rate.
+  /// @return invalid_parameter: as create(), or what cannot change at run time; then as before
+  Status reconfigure(const Config& config);
+
   /// The navigator lives. Only one that was heard can be missed; a landing ends when it is back.
   void heard_navigator(std::int64_t now_ns);
 

@@ -35,43 +35,45 @@ void describe(Self& c, Visitor&& visit) {
         "(thesis Ref. [40]): a polynomial through the waypoints that does not know the corridor; "
         "polynomial (Ref. [42]): minimum jerk through the waypoints, planned again with more "
         "waypoints where it leaves the corridor",
-        OneOf{{"scale", "fixed", "thesis", "minimum_snap", "polynomial"}});
+        AtRunTime{OneOf{{"scale", "fixed", "thesis", "minimum_snap", "polynomial"}}});
   visit("piece_duration_s", c.piece_duration_s, "s",
         "longest piece of the first cut: shorter pieces fly faster and cost more to compute "
         "(not used by thesis)",
-        Range{0.02, 100.0});
+        AtRunTime{Range{0.02, 100.0}});
   visit("min_pieces", c.min_pieces, "", "pieces of the shortest flight (not used by thesis)",
-        Range{2.0, 1000.0});
+        AtRunTime{Range{2.0, 1000.0}});
   visit("refinement_passes", c.refinement_passes, "",
         "how often the durations of the pieces are balanced and solved again (scale only)",
-        Range{0.0, 20.0});
+        AtRunTime{Range{0.0, 20.0}});
   visit("extra_time", c.extra_time, "",
         "how much longer than the soonest flight may last so as to be smoother: 0.1 is 10 %, and "
         "then the flight with the least jerk of that duration is flown",
-        Range{0.0, 10.0});
+        AtRunTime{Range{0.0, 10.0}});
   visit("max_iterations", c.max_iterations, "", "of the interior-point method, in each solve",
-        Range{5.0, 1000.0});
+        AtRunTime{Range{5.0, 1000.0}});
   visit("max_stretch", c.max_stretch, "",
         "longest duration that is tried, in trapezoid durations (fixed and moving starts)",
-        Range{1.0, 1000.0});
+        AtRunTime{Range{1.0, 1000.0}});
   visit("max_thrust_m_s2", c.max_thrust_m_s2, "m/s^2",
         "most thrust over the mass that the vehicle has; a flight that needs more is slowed where "
         "it does (0: not checked)",
-        Range{0.0, 1e3});
+        AtRunTime{Range{0.0, 1e3}});
   visit("min_thrust_m_s2", c.min_thrust_m_s2, "m/s^2",
-        "least thrust over the mass, likewise (0: not checked)", Range{0.0, 9.0});
+        "least thrust over the mass, likewise (0: not checked)", AtRunTime{Range{0.0, 9.0}});
   visit("max_tilt_rad", c.max_tilt_rad, "rad",
         "how far the thrust may lean from the vertical, likewise (0: not checked)",
-        Range{0.0, 1.5});
+        AtRunTime{Range{0.0, 1.5}});
   visit("yaw", c.yaw, "",
         "where to look: none (no wish), fixed (the request's goal yaw), along_motion or "
         "towards_point",
-        OneOf{{"none", "fixed", "along_motion", "towards_point"}});
+        AtRunTime{OneOf{{"none", "fixed", "along_motion", "towards_point"}}});
   visit("yaw_rate_max_rad_s", c.yaw_rate_max_rad_s, "rad/s",
         "how fast yaw may turn; the tracker's max_yaw_rate_rad_s is to be above it",
-        Range::positive(100.0));
-  visit("yaw_point_x_m", c.yaw_point_x_m, "m", "what towards_point looks at, map", Anything{});
-  visit("yaw_point_y_m", c.yaw_point_y_m, "m", "what towards_point looks at, map", Anything{});
+        AtRunTime{Range::positive(100.0)});
+  visit("yaw_point_x_m", c.yaw_point_x_m, "m", "what towards_point looks at, map",
+        AtRunTime{Anything{}});
+  visit("yaw_point_y_m", c.yaw_point_y_m, "m", "what towards_point looks at, map",
+        AtRunTime{Anything{}});
 }
 
 }  // namespace goshawk::trajectory_optimizer

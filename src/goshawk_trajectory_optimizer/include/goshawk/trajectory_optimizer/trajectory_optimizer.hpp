@@ -35,6 +35,8 @@ class TrajectoryOptimizer {
  public:
   /// @return invalid_parameter, naming each value out of range
   static Result<TrajectoryOptimizer> create(const Config& config);
+  /// From the next request on by this config; or, where create() would refuse it, as before.
+  Status reconfigure(const Config& config);
   TrajectoryOptimizer(TrajectoryOptimizer&&) noexcept;
   TrajectoryOptimizer& operator=(TrajectoryOptimizer&&) noexcept;
   ~TrajectoryOptimizer();

@@ -1,0 +1,53 @@
+#include "turns.hpp"
+
+#include <chrono>
+
+#include "goshawk_msgs.h"
+#include "verb.hpp"
+
+namespace goshawk::recording {
+namespace {
+
+using goshawk_msgs::msg::Turn;
+using Clock = std::chrono::steady_clock;
+
+constexpr const char* kTurnEnd = "/turn";
+constexpr double kAskAgain_s = 0.5;  // a node that is asked twice does its turn once
+constexpr int kAsksUntilWord = 10;
+
+}  // namespace
+
+std::string turn_of(const std::string& topic, const std::string& type) {
+  if (type != kTurnType || !topic.ends_with(kTurnEnd)) return "";
+  return topic.substr(0, topic.size() - std::string(kTurnEnd).size());
+}
+
+TurnGiver::TurnGiver(runtime::Node& node) : node_(node) {
+  node.subscribe<Turn>("/turn_done", runtime::Qos::reliable_last(100),
+                       [this](const Turn& m, const runtime::MessageInfo&) {
+                         who_ = m.node();
+                         number_ = m.number();
+                       });
+}
+
+Status TurnGiver::give(const runtime::RawPublisher& turns, Bytes& turn,
+                       const std::string& follower) {
+  Turn m;
+  if (!runtime::decode(turn, m)) {
+    return fail(ErrorCode::invalid_input, "a recorded turn of " + follower + " is no Turn");
+  }
+  number_ = 0;
+  for (int asked = 0; !Interruptible::interrupted(); ++asked) {
+    if (asked == kAsksUntilWord) say("replay", follower + " does not answer: replay waits for it");
+    if (auto status = turns.publish_raw(&turn); !status) return status;
+    const auto until = Clock::now() + std::chrono::duration<double>(kAskAgain_s);
+    for (double left_s = kAskAgain_s; left_s > 0.0 && !Interruptible::interrupted();
+         left_s = std::chrono::duration<double>(until - Clock::now()).count()) {
+      node_.spin_some(left_s);
+      if (who_ == follower && number_ == m.number()) return success();
+    }
+  }
+  return success();
+}
+
+}  // namespace goshawk::recording
