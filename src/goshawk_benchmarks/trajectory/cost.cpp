@@ -222,25 +222,12 @@ void measure_cost(Report& report) {
     }
   }
   report.note("binding", binding);
-  report.draw({.file = "cost",
-               .title = "Cost of a solve",
-               .x = "pieces",
-               .y = "time_us",
-               .x_label = "pieces",
-               .y_label = "median time of the processor [us]",
-               .series = "problem",
-               .log_x = true,
-               .log_y = true,
-               .from = "cost"});
-  report.draw({.file = "cost_a_piece",
-               .title = "Cost of a piece in an iteration",
-               .x = "pieces",
-               .y = "us_a_piece_and_iteration",
-               .x_label = "pieces",
-               .y_label = "median time of the processor [us]",
-               .series = "problem",
-               .log_x = true,
-               .from = "cost"});
+  Plot plot{.x = "pieces", .x_label = "pieces", .series = "problem", .log_x = true, .from = "cost"};
+  const std::string label = "median time of the processor [us]";
+  report.draw(plot.of("cost_a_piece", "Cost of a piece in an iteration", "us_a_piece_and_iteration",
+                      label));
+  plot.log_y = true;
+  report.draw(plot.of("cost", "Cost of a solve", "time_us", label));
 }
 
 }  // namespace goshawk::bench
