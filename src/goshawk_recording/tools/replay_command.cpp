@@ -40,6 +40,9 @@ void add_options(CLI::App& app, Options& o) {
                  "nodes that run with lock_step: true: they are given the recorded turns, so that "
                  "each takes the same messages at the same time as in the recording")
       ->expected(1, -1);
+  app.add_option(
+      "--plant", o.player.plant,
+      "the node that led the recording, where it is to be given turns as well, by /clock");
   app.add_option("--prefix", o.player.prefix, "before every topic, as in /replay");
   app.add_option("--wait", o.player.wait_s, "[s] longest wait for readers before the start")
       ->capture_default_str()
@@ -103,7 +106,8 @@ int list(const Reader& reader, const Options& o) {
 /// Whether a channel is played: in lock step with the turns of the nodes that were named, and not
 /// with those of others.
 bool wanted(const Options& o, const std::string& topic, const std::string& type) {
-  if (!o.player.lock_step.empty() && type == kTurnType) {
+  if (!o.player.plant.empty() && topic == kClock) return true;
+  if ((!o.player.lock_step.empty() || !o.player.plant.empty()) && type == kTurnType) {
     return o.player.lock_step.contains(turn_of(topic, type));
   }
   return o.topics.empty() || matches(o.topics, topic);
@@ -116,6 +120,10 @@ Status check_turns(const Reader& reader, const Options& o) {
   for (const auto& [id, channel] : reader.channels()) {
     const std::string node = turn_of(channel.topic, type_of(reader, channel));
     if (!node.empty() && recorded.insert(node).second) list += (list.empty() ? "" : ", ") + node;
+  }
+  if (!o.player.plant.empty() && recorded.empty()) {
+    return fail(ErrorCode::invalid_parameter,
+                "--plant " + o.player.plant + ": " + o.file + " was not recorded in lock step");
   }
   for (const auto& node : o.player.lock_step) {
     if (recorded.contains(node)) continue;
@@ -238,6 +246,11 @@ int replay_command(const std::vector<std::string>& arguments) {
     auto full = full_topic_name(node);
     if (!full) return report_failure("replay", full.error(), o.json, kWrongCall);
     o.player.lock_step.insert(*full);
+  }
+  if (!o.player.plant.empty()) {
+    auto full = full_topic_name(o.player.plant);
+    if (!full) return report_failure("replay", full.error(), o.json, kWrongCall);
+    o.player.plant = *full;
   }
   if (!o.player.prefix.empty()) {
     auto full = full_topic_name(o.player.prefix);
