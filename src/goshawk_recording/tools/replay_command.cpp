@@ -229,6 +229,11 @@ int replay(const Options& o) {
 int replay_command(const std::vector<std::string>& arguments) {
   CLI::App app("Play a recording over DDS: same topics, types, bytes and quality of service.",
                "goshawk replay");
+  app.footer(
+      "Examples:\n"
+      "  goshawk replay flight.mcap --list\n"
+      "  goshawk replay flight.mcap --rate 0.5 --loop --clock\n"
+      "  goshawk replay flight.mcap --topics /plan_request /map/* --restamp");
   Options o;
   add_options(app, o);
   if (const auto status = parse(app, arguments)) return *status;

@@ -38,6 +38,8 @@ async function colors() {
 await page.goto(url, {waitUntil: 'commit'});
 check(await there('tracking error [m]'), 'our layout is loaded');
 check(await there('Send this goal'), 'with a panel that sends a goal');
+const {places} = await page.evaluate(async () => (await fetch('show.json')).json());
+check(places.length > 3, `and a picture of where it flies: ${places.length} places`);
 if (kind === 'recording') {
   // A click into the time bar jumps there: to the flight's end. Before the recording is open there
   // is no bar; a second click too early would begin the jump once more.
