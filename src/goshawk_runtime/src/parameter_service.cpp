@@ -11,10 +11,10 @@ namespace {
 
 using goshawk_msgs::msg::Parameter;
 
-constexpr std::size_t kMostGiven = 16;       // answers kept: no more clients than that ask at once
+constexpr std::size_t kMostGiven = 16;  // answers kept: no more clients than that ask at once
 constexpr std::size_t kMostParameters = 1000;  // in one request
-constexpr std::size_t kLongestName = 256;    // [byte] of clients and parameters
-constexpr std::size_t kLongestValue = 4096;  // [byte]
+constexpr std::size_t kLongestName = 256;      // [byte] of clients and parameters
+constexpr std::size_t kLongestValue = 4096;    // [byte]
 const Qos kQos = Qos::reliable_last(50);
 
 Error malformed(const std::string& why) {

@@ -8,7 +8,7 @@
 namespace goshawk::trajectory_optimizer {
 namespace {
 
-constexpr int kMostPieces = 40;  // with more, many constraints bind and rounding grows
+constexpr int kMostPieces = 100;  // with more, many constraints bind and rounding grows
 constexpr int kSteps = 30, kStepsAPiece = 8;
 // Where more balls bind than a few, or their directions hang together, the interior point is
 // faster.

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "goshawk/trajectory_optimizer/rivals.hpp"
+#include "switching.hpp"
 #include "usage.hpp"
 
 namespace goshawk::trajectory_optimizer {
@@ -14,14 +15,24 @@ namespace {
 
 constexpr double kAllFaces = std::numeric_limits<double>::infinity();
 // Of the first reach: how far faces matter once the shape is nearly known.
-constexpr double kNarrow = 0.1;
+constexpr double kNarrow = 0.35;
 // Exponent of a piece's use of its limits: above 1, as what one piece gives up others need.
 constexpr double kBalance = 1.8;
-constexpr double kCoarseGap = 0.1;  // relative, of all passes but the last
-constexpr double kFineGap = 1e-3;
+constexpr int kMostMovingPasses = 2;  // with a moving end: more are needed to meet it
+// Of the first reach: how far beyond a polytope the flight may be where it changes to the next.
+constexpr double kBeyond = 0.04;
+constexpr double kWorthAPass = 0.01;  // of the duration
+// All passes but the last need to be no better than what is asked of them: where time is lacking.
+constexpr SplineSolver::Settings kCoarse{
+    .gap = 0.5, .feasibility = 3e-2, .limit_feasibility = 3e-2, .dual_feasibility = 0.5};
+constexpr SplineSolver::Settings kFine{
+    .gap = 1e-3, .feasibility = 1e-8, .limit_feasibility = 1e-8, .dual_feasibility = 1e-3};
+constexpr double kCoarseLimits = 0.1;
+constexpr double kFineLimits = 1e-3;
 // The squared duration beside the mean squared jerk, each in units of the trapezoid's: enough for
 // nearly the least time, not so much that the jerk is left to chance.
-constexpr double kTimeWeight = 100.0;
+constexpr double kTimeWeight = 300.0;
+constexpr double kCoarseTimeWeight = 100.0;
 constexpr std::array<double, 5> kEndSlack{2e-2, 2e-3, 2e-5, 0.0, 0.0};  // pass by pass
 
 void stretch_durations(Plan& plan, double factor) {
@@ -83,19 +94,25 @@ void TrajectoryOptimizer::Method::scale_moving(const Request& request, Plan& pla
   // A start above a limit: as little time above it as there is an answer for.
   constexpr std::array<double, 4> kBraking{0.4, 0.6, 0.8, 0.99};
   const bool above = StartAllowance::of(request.start, request.limits).until_s > 0.0;
+  const auto attempt = [&](Lead lead, double braking, Refinement refinement) {
+    lead.braking = braking;
+    plan = cut_trapezoid(request, config_, lead);
+    refine(request, plan, std::min(config_.refinement_passes, kMostMovingPasses), refinement);
+    return best_ || stopped();
+  };
   for (const double braking : kBraking) {
-    for (Lead lead : kLeads) {
-      lead.braking = braking;
-      plan = cut_trapezoid(request, config_, lead);
-      refine(request, plan, config_.refinement_passes);
-      if (best_ || stopped()) return;
+    // What is bettered most is not always what can be flown from there.
+    if (attempt(kLeads.front(), braking, Refinement::switches)) return;
+    for (const Lead& lead : kLeads) {
+      if (attempt(lead, braking, Refinement::balance)) return;
     }
     if (!above) return;
   }
 }
 
-// Design A with refinement B of docs/trajectories.md: solve, balance the pieces, solve again.
-void TrajectoryOptimizer::Method::refine(const Request& request, Plan& plan, int refinements) {
+// Coarse solves that better the durations of the pieces, and then a fine one.
+void TrajectoryOptimizer::Method::refine(const Request& request, Plan& plan, int refinements,
+                                         Refinement refinement) {
   const bool rests = request.rests();
   const int passes = 1 + refinements + (rests ? 0 : 4);
   const double first_reach_m = corner_reach_m(plan, request.limits);
@@ -106,8 +123,12 @@ void TrajectoryOptimizer::Method::refine(const Request& request, Plan& plan, int
     double kappa = 1.0;
     if (!solve_scale(request, plan, reach_m, coarse, slack, kappa)) return;
     if (coarse) {
-      balance(request, plan);
       reach_m = kNarrow * first_reach_m;
+      if (refinement == Refinement::balance) {
+        balance(request, plan);
+      } else if (move_switches(request, plan, kBeyond * first_reach_m) < kWorthAPass) {
+        refinements = pass + 1;  // the next is the last
+      }
       continue;
     }
     consider(request, plan);
@@ -123,6 +144,14 @@ void TrajectoryOptimizer::Method::refine(const Request& request, Plan& plan, int
     const bool settled = certified && (rests || std::abs(kappa - 1.0) < 1e-3);
     if (settled) return;
   }
+}
+
+// @return by what part of its duration the flight gets shorter, to first order
+double TrajectoryOptimizer::Method::move_switches(const Request& request, Plan& plan,
+                                                  double beyond_m) {
+  solver_.time_slopes(slopes_);
+  for (double& slope : slopes_) slope /= last_.eta;
+  return trajectory_optimizer::move_switches(request, config_, slopes_, beyond_m, plan);
 }
 
 // Pieces that stay below both limits get less time.
@@ -229,18 +258,15 @@ void TrajectoryOptimizer::Method::slow_to_limits(const Request& request, Plan& p
 
 bool TrajectoryOptimizer::Method::solve_scale(const Request& request, Plan& plan, double reach_m,
                                               bool coarse, double end_slack, double& kappa) {
-  if (!make_problem(request, plan, true, kTimeWeight, reach_m, problem_, units_, end_slack))
+  const double time_weight = coarse ? kCoarseTimeWeight : kTimeWeight;
+  if (!make_problem(request, plan, true, time_weight, reach_m, problem_, units_, end_slack))
     return false;
-  last_ = solver_.solve(
-      problem_, {.max_iterations = config_.max_iterations,
-                 .gap = coarse ? kCoarseGap : kFineGap,
-                 .feasibility = coarse ? 1e-2 : 1e-8,
-                 // From rest to rest the durations are set to what the limits need afterwards.
-                 .limit_feasibility = coarse            ? 3e-2
-                                      : request.rests() ? 1e-3
-                                                        : 1e-8,
-                 .dual_feasibility = coarse ? 0.1 : 1e-3,
-                 .stop = request.out_of_time});
+  SplineSolver::Settings settings = coarse ? kCoarse : kFine;
+  // From rest to rest the durations are set to what the limits need afterwards.
+  if (request.rests()) settings.limit_feasibility = coarse ? kCoarseLimits : kFineLimits;
+  settings.max_iterations = config_.max_iterations;
+  settings.stop = request.out_of_time;
+  last_ = solver_.solve(problem_, settings);
   iterations_ += last_.iterations;
   ++solves_;
   if (last_.status != SplineSolver::Status::solved || !(last_.eta > 0.0)) return false;

@@ -31,7 +31,11 @@ class TrajectoryOptimizer::Method {
   Result<Solution> rival(const Request& request);
 
   void scale_moving(const Request& request, Plan& plan);
-  void refine(const Request& request, Plan& plan, int refinements);
+  /// What a coarse solve is for: the time in each polytope, or the durations of the pieces by their
+  /// use of the limits.
+  enum class Refinement { switches, balance };
+  void refine(const Request& request, Plan& plan, int refinements,
+              Refinement refinement = Refinement::switches);
   /// Time and shape together, once: the plan becomes the solution and kappa its time scale.
   /// @param coarse good enough to see which pieces need more time, not to fly
   bool solve_scale(const Request& request, Plan& plan, double reach_m, bool coarse,
@@ -40,6 +44,8 @@ class TrajectoryOptimizer::Method {
   bool solve_fixed(const Request& request, Plan& plan);
   /// Fixed durations, longer and longer, until a plan is certified.
   void try_longer(const Request& request, const Plan& plan);
+  /// Gives each polytope its time, by what that is worth.
+  double move_switches(const Request& request, Plan& plan, double beyond_m);
   /// Takes time from pieces that stay below their limits.
   void balance(const Request& request, Plan& plan) const;
   /// Keeps the plan if it is certified and better than what is kept.
@@ -55,6 +61,7 @@ class TrajectoryOptimizer::Method {
   ActiveSetSolver active_set_;
   SplineProblem problem_;
   Units units_;
+  std::vector<double> slopes_;
   std::optional<Solution> best_;
   Plan best_plan_;
   double best_cost_ = 0.0;

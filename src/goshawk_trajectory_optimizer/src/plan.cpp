@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "cut.hpp"
 #include "goshawk/trajectory_optimizer/time_profile.hpp"
 
 namespace goshawk::trajectory_optimizer {
@@ -12,20 +13,11 @@ namespace {
 constexpr double kLeastLength = 1e-6;  // [m] of a path, for the estimate of its duration
 constexpr double kShortest = 0.01;     // of a mean piece: shorter ones cost accuracy
 
-// In longest pieces: the sooner the first ends, the sooner the acceleration is there.
-constexpr double kFirstFromRest = 0.4;
-
 constexpr double kCorner = 0.6;  // of v^2 / a: how far a corner is cut, generously
 
 double speed_along(const FlatState& state, const Vec3& from, const Vec3& to) {
   const Vec3 step = to - from;
   return step.norm() > 0.0 ? std::max(0.0, state.velocity.dot(step) / step.norm()) : 0.0;
-}
-
-void append(Plan& plan, double duration_s, int polytope, const FlatState& end) {
-  plan.durations_s.push_back(duration_s);
-  plan.polytopes.push_back(polytope);
-  plan.joints.push_back(end);
 }
 
 double path_length(const std::vector<Vec3>& waypoints) {
@@ -34,10 +26,6 @@ double path_length(const std::vector<Vec3>& waypoints) {
     length += (waypoints[k + 1] - waypoints[k]).norm();
   }
   return length;
-}
-
-bool is_moving(const FlatState& s) {
-  return !s.velocity.isZero(0.0) || !s.acceleration.isZero(0.0);
 }
 
 }  // namespace
@@ -62,17 +50,8 @@ Plan cut_trapezoid(const Request& request, const Config& config, const Lead& lea
   plan.reference_s = std::max(
       plan.reference_s,
       rest_to_rest_duration_s(kLeastLength, request.limits.v_max_m_s, request.limits.a_max_m_s2));
-  const double longest = std::min(config.piece_duration_s, plan.reference_s / config.min_pieces);
-  const auto first = [&](const FlatState& end) {
-    return is_moving(end) ? lead.first_piece : kFirstFromRest;
-  };
-  // Of a piece that begins or ends at t.
-  const auto cap = [&](double t) {
-    double most = longest;
-    most = std::min(most, std::max(first(request.start) * longest, t));
-    most = std::min(most, std::max(first(request.goal) * longest, 0.5 * (plan.reference_s - t)));
-    return most;
-  };
+  plan.at_moving_end = lead.first_piece;
+  const auto cutter = Cutter::of(request, config, plan.reference_s, plan.at_moving_end);
   double begin = 0.0;
   plan.joints.push_back(request.start);
   for (int k = 0; k < profile.segments(); ++k) {
@@ -80,13 +59,10 @@ Plan cut_trapezoid(const Request& request, const Config& config, const Lead& lea
         plan.stays ? plan.reference_s / profile.segments() : profile.duration_s(k);
     const double stretch = k == 0 ? lead.first_segment : 1.0;
     const double duration = stretch * trapezoid;
-    for (double t = 0.0, left = 1.0; left > 0.0;) {
-      left = std::ceil((duration - t) / cap(begin + t) - 1e-9) - 1.0;
-      const double piece = left > 0.0 ? (duration - t) / (left + 1.0) : duration - t;
-      t += piece;
-      append(plan, std::max(piece, kShortest * longest), k,
+    cutter.cut(begin, duration, [&](double t, double piece) {
+      append(plan, std::max(piece, kShortest * cutter.longest_s), k,
              profile.state(k, std::min(t / stretch, trapezoid)));
-    }
+    });
     begin += duration;
   }
   plan.joints.back() = request.goal;

@@ -259,7 +259,7 @@ TEST(ActiveSetSolver, SuitsFixedDurationsOfFewPieces) {
   problem.scale = true;
   EXPECT_FALSE(ActiveSetSolver::suits(problem));
   problem.scale = false;
-  problem.durations.assign(41, 1.0);
+  problem.durations.assign(101, 1.0);
   EXPECT_FALSE(ActiveSetSolver::suits(problem));
 }
 

@@ -132,6 +132,46 @@ TEST(SplineSolver, TheLagrangianIsFlatAtASolution) {
   }
 }
 
+// The envelope theorem against a solve with a little more and a little less time for one piece.
+TEST(SplineSolver, TimeSlopesAreThoseOfTheLeastCost) {
+  Random random(12);
+  SplineSolver solver;
+  constexpr SplineSolver::Settings kFine{.gap = 1e-11, .dual_feasibility = 1e-8};
+  constexpr double h = 1e-4;
+  int compared = 0;
+  for (int n = 0; n < 60; ++n) {
+    SCOPED_TRACE(n);
+    auto instance = random_instance(random, true, 1.0);
+    if (n % 3 == 0) instance.problem.j_max.assign(instance.problem.durations.size(), 20.0);
+    const auto least_cost = [&](std::size_t piece, double factor) {
+      SplineProblem problem = instance.problem;
+      const double before = problem.durations[piece];
+      problem.durations[piece] *= factor;
+      for (FacePoint& point : problem.face_points) {
+        const bool first = point.joint == int(piece) && point.map[1] > 0.0;
+        const bool second = point.joint == int(piece) + 1 && point.map[1] < 0.0;
+        if (!first && !second) continue;
+        point.map[1] *= problem.durations[piece] / before;
+        point.map[2] *= std::pow(problem.durations[piece] / before, 2);
+      }
+      return solver.solve(problem, kFine);
+    };
+    const auto outcome = solver.solve(instance.problem, kFine);
+    if (outcome.status != SplineSolver::Status::solved) continue;
+    std::vector<double> slopes;
+    solver.time_slopes(slopes);
+    for (std::size_t piece = 0; piece < slopes.size(); ++piece) {
+      const auto ahead = least_cost(piece, std::exp(h));
+      const auto behind = least_cost(piece, std::exp(-h));
+      if (ahead.status != outcome.status || behind.status != outcome.status) continue;
+      ++compared;
+      EXPECT_NEAR(slopes[piece], (ahead.objective - behind.objective) / (2.0 * h),
+                  1e-3 * (1.0 + outcome.objective));
+    }
+  }
+  EXPECT_GE(compared, 100);
+}
+
 TEST(SplineSolver, ProvesThatTooShortDurationsAreInfeasible) {
   Random random(7);
   SplineSolver solver;

@@ -39,7 +39,10 @@ class Fault(Exception):
 
 def parse(arguments):
     parser = argparse.ArgumentParser(prog="goshawk view", description=__doc__.split("\n\n")[0],
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+                                     formatter_class=argparse.RawDescriptionHelpFormatter,
+                                     epilog="examples:\n  goshawk view\n"
+                                     "  goshawk view flight.mcap --port 0\n"
+                                     "  goshawk view --live --foxglove")
     parser.add_argument("what", nargs="?", help="flight folder, or MCAP recording (default: the "
                         "newest folder in ./flights)")
     parser.add_argument("--live", action="store_true", help="look at what flies now")

@@ -12,7 +12,7 @@ struct Config {
   std::string method = "scale";
   double piece_duration_s = 0.45;  // [s]
   int min_pieces = 8;
-  int refinement_passes = 2;
+  int refinement_passes = 5;
   double extra_time = 0.0;
   int max_iterations = 60;
   double max_stretch = 20.0;
@@ -43,7 +43,8 @@ void describe(Self& c, Visitor&& visit) {
   visit("min_pieces", c.min_pieces, "", "pieces of the shortest flight (not used by thesis)",
         AtRunTime{Range{2.0, 1000.0}});
   visit("refinement_passes", c.refinement_passes, "",
-        "how often the durations of the pieces are balanced and solved again (scale only)",
+        "how often, at most, the times of the change from polytope to polytope are bettered and "
+        "all is solved again (scale only)",
         AtRunTime{Range{0.0, 20.0}});
   visit("extra_time", c.extra_time, "",
         "how much longer than the soonest flight may last so as to be smoother: 0.1 is 10 %, and "

@@ -29,6 +29,7 @@ struct Plan {
   std::vector<int> polytopes;       // m: where each piece lives
   std::vector<FlatState> joints;    // m + 1
   std::vector<double> a_factors;    // m, or none: of the acceleration limit, at most 1
+  double at_moving_end = 1.0;       // the first piece there, in longest ones
   double reference_s = 0.0;         // [s] duration of the trapezoid, above zero
   double braking_s = 0.0;           // [s] how long a start above a limit may stay above it
   bool stays = false;               // no way to go: any duration will do

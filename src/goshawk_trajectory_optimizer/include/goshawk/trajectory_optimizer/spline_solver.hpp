@@ -46,6 +46,11 @@ class SplineSolver {
 
   const std::vector<Joint>& joints() const { return solution_; }
 
+  /// What the durations are worth: the derivative of the least cost by the logarithm of each
+  /// piece's duration, by the multipliers of the last problem (envelope theorem). It is as exact
+  /// as the solve was. @pre a solve went before; ends that do not move with eta
+  void time_slopes(std::vector<double>& slopes) const;
+
   /// The Lagrangian f(x) + z'g(x) of the last problem with its final multipliers, anywhere: its
   /// gradient is zero at a solution. For tests by finite differences. @pre a solve went before
   double lagrangian(const std::vector<Joint>& joints, double eta);
