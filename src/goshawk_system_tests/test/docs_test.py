@@ -63,7 +63,8 @@ class Pages(SystemTest):
 
     def test_links_lead_somewhere(self):
         for page in PAGES:
-            for target in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", page.read_text()):
+            text = re.sub(r"(?m)^    .*$", "", page.read_text())  # code has no links
+            for target in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", text):
                 with self.subTest(page=page.name, link=target):
                     self.assertTrue((page.parent / target).exists())
 
