@@ -14,6 +14,16 @@ case "$*" in
   "topic echo --help") printf -- '  --once  one\n' ;;
   "launch --list") printf 'flight\nflight_container\n' ;;
   "param list") printf 'tracker\nnavigator\n' ;;
+  "param describe tracker") cat <<'EOF' ;;
+yaw (string)
+  where to look
+  range: one of plan, keep
+  takes effect at run time
+mass_kg (double, kg)
+  takes effect at start only
+EOF
+  "param describe tracker yaw") printf 'yaw (string)\n  range: one of plan, keep\n' ;;
+  "node list --timeout 1") printf '/tracker\n/uav1/tracker\n' ;;
   *) exit 2 ;;
 esac
 """
@@ -45,6 +55,15 @@ class CompletionTest(unittest.TestCase):
         self.assertEqual(self.complete("launch", "flight_"), ["flight_container"])
         self.assertEqual(self.complete("run", ""), ["tracker", "navigator"])
         self.assertEqual(self.complete("param", "describe", "n"), ["navigator"])
+
+    def test_nodes_parameters_and_their_words(self):
+        self.assertEqual(self.complete("param", "set", "/u"), ["/uav1/tracker"])
+        self.assertEqual(self.complete("param", "get", "/tracker", ""), ["yaw", "mass_kg"])
+        self.assertEqual(self.complete("param", "set", "/tracker", ""), ["yaw"])
+        self.assertEqual(self.complete("param", "set", "/uav1/tracker", "yaw", ""),
+                         ["plan", "keep"])
+        self.assertEqual(self.complete("param", "set", "/tracker", "yaw", "keep", ""), ["yaw"])
+        self.assertEqual(self.complete("param", "describe", "tracker", "m"), ["mass_kg"])
 
     def test_options(self):
         self.assertEqual(self.complete("fly", "--m"), ["--map", "--max-speed"])

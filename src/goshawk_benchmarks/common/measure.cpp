@@ -75,6 +75,10 @@ std::vector<Timing> compare(const std::string& name, const std::vector<Contender
   return timings;
 }
 
+double at_share(const std::vector<double>& sorted, double share) {
+  return sorted.empty() ? 0.0 : sorted[std::size_t(share * double(sorted.size() - 1) + 0.5)];
+}
+
 double median(std::vector<double> values) {
   std::ranges::sort(values);
   return nearest_rank(values, 0.5);

@@ -28,6 +28,17 @@ struct Plot {
   bool log_y = false;
   bool points_only = false;
   std::string from = "rows";  // or the key of a note that holds rows of another kind
+
+  /// Another column of the same rows over the same x.
+  Plot of(std::string its_file, std::string its_title, std::string its_y,
+          std::string its_y_label) const {
+    Plot plot = *this;
+    plot.file = std::move(its_file);
+    plot.title = std::move(its_title);
+    plot.y = std::move(its_y);
+    plot.y_label = std::move(its_y_label);
+    return plot;
+  }
 };
 
 /// Rows of a benchmark, written as a table or as JSON, and as pictures.

@@ -228,32 +228,18 @@ void measure_map_size(Report& report) {
 }
 
 void draw(Report& report, const std::string& world, const std::string& file) {
-  const nlohmann::json where{{"table", "segments"}, {"world", world}};
-  report.draw({.file = file + "_time",
-               .title = "Time for a segment, " + world,
-               .x = "density",
-               .y = "median_us",
-               .x_label = "share of blocked voxels",
-               .y_label = "median [us]",
-               .series = "generator",
-               .where = where,
-               .log_y = true});
-  report.draw({.file = file + "_volume",
-               .title = "Volume of a polytope, " + world,
-               .x = "density",
-               .y = "median_volume_m3",
-               .x_label = "share of blocked voxels",
-               .y_label = "median [m3]",
-               .series = "generator",
-               .where = where});
-  report.draw({.file = file + "_paths",
-               .title = "Time for a segment of a whole path, " + world,
-               .x = "density",
-               .y = "median_us",
-               .x_label = "share of blocked voxels",
-               .y_label = "median [us]",
-               .series = "generator",
-               .where = {{"table", "paths"}, {"world", world}}});
+  Plot plot{.x = "density",
+            .x_label = "share of blocked voxels",
+            .series = "generator",
+            .where = {{"table", "segments"}, {"world", world}}};
+  report.draw(plot.of(file + "_volume", "Volume of a polytope, " + world, "median_volume_m3",
+                      "median [m3]"));
+  plot.log_y = true;
+  report.draw(plot.of(file + "_time", "Time for a segment, " + world, "median_us", "median [us]"));
+  plot.log_y = false;
+  plot.where["table"] = "paths";
+  report.draw(plot.of(file + "_paths", "Time for a segment of a whole path, " + world, "median_us",
+                      "median [us]"));
 }
 
 void run(Report& report) {

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "common/child.hpp"
+#include "common/measure.hpp"
 #include "common/report.hpp"
 #include "dds/disturbance.hpp"
 #include "dds/echo.hpp"
@@ -78,16 +79,12 @@ class Link {
   std::optional<Asker> asker_;
 };
 
-double at(const std::vector<double>& sorted, double share) {
-  return sorted.empty() ? 0.0 : sorted[std::size_t(share * double(sorted.size() - 1) + 0.5)];
-}
-
 nlohmann::ordered_json percentiles(std::vector<double> us) {
   std::ranges::sort(us);
-  return {{"p50_us", at(us, 0.5)},
-          {"p90_us", at(us, 0.9)},
-          {"p99_us", at(us, 0.99)},
-          {"max_us", at(us, 1.0)}};
+  return {{"p50_us", at_share(us, 0.5)},
+          {"p90_us", at_share(us, 0.9)},
+          {"p99_us", at_share(us, 0.99)},
+          {"max_us", at_share(us, 1.0)}};
 }
 
 void add_trips(Report& report, nlohmann::ordered_json row, Trips trips) {
@@ -160,11 +157,7 @@ void draw(Report& report) {
        {std::tuple{"dds_round_trip_p50", "There and back, median", "p50_us", "us", "round trip"},
         std::tuple{"dds_round_trip_p99", "There and back, 99 of 100", "p99_us", "us", "round trip"},
         std::tuple{"dds_throughput", "Throughput, reliable", "mb_per_s", "MB/s", "throughput"}}) {
-    Plot plot = common;
-    plot.file = file;
-    plot.title = title;
-    plot.y = y;
-    plot.y_label = label;
+    Plot plot = common.of(file, title, y, label);
     plot.where = {{"table", table}};
     if (std::string(table) == "throughput") plot.where["reliability"] = "reliable";
     report.draw(plot);

@@ -2,6 +2,7 @@
 
 #include "common/measure.hpp"
 #include "goshawk/core/random.hpp"
+#include "goshawk/trajectory_optimizer/active_set_solver.hpp"
 #include "goshawk/trajectory_optimizer/plan.hpp"
 #include "goshawk/trajectory_optimizer/spline_solver.hpp"
 #include "parts.hpp"
@@ -48,8 +49,31 @@ Corridor wandering_corridor(int segments) {
   return corridor;
 }
 
+// Both solvers on one problem, in turns.
+struct Comparison {
+  SplineSolver::Outcome interior, active;
+  int binding = 0;
+  double interior_us = 0.0, active_us = 0.0;
+};
+
+Comparison compare_solvers(const SplineProblem& problem, const SplineSolver::Settings& settings,
+                           int rounds) {
+  Comparison c;
+  SplineSolver interior;
+  ActiveSetSolver active;
+  const auto timing =
+      compare("solvers",
+              {{"interior", [&] { c.interior = interior.solve(problem, settings); }},
+               {"active", [&] { c.active = active.solve(problem, settings); }}},
+              rounds, Clock::processor);
+  c.binding = active.binding();
+  c.interior_us = timing[0].median_us();
+  c.active_us = timing[1].median_us();
+  return c;
+}
+
 // The thesis' quadratic programme, durations stretched until it is feasible.
-Json fixed_row(int segments, int rounds) {
+SplineProblem fixed_problem(int segments) {
   const Corridor corridor = wandering_corridor(segments);
   FlatState start, goal;
   start.position = corridor.waypoints_map.front();
@@ -60,21 +84,75 @@ Json fixed_row(int segments, int rounds) {
   SplineSolver solver;
   SplineProblem problem;
   Units units;
-  SplineSolver::Outcome outcome;
   do {
     for (double& duration : plan.durations_s) duration *= 1.1;
     make_problem(request, plan, false, 1.0, HUGE_VAL, problem, units);
-    outcome = solver.solve(problem, {});
-  } while (outcome.status != SplineSolver::Status::solved);
-  const auto timing = compare("fixed", {{"fixed", [&] { outcome = solver.solve(problem, {}); }}},
-                              rounds, Clock::processor);
-  return {{"problem", "fixed durations, one quintic a segment, 16 planes, per axis"},
-          {"segments", segments},
-          {"pieces", segments},
-          {"iterations", outcome.iterations},
-          {"time_us", timing[0].median_us()},
-          {"us_a_piece", timing[0].median_us() / segments},
-          {"us_a_piece_and_iteration", timing[0].median_us() / segments / outcome.iterations}};
+  } while (solver.solve(problem, {}).status != SplineSolver::Status::solved);
+  return problem;
+}
+
+Json fixed_row(int segments, int rounds) {
+  constexpr int kMostCompared = 100;  // longer ones the active set is not asked
+  const SplineProblem problem = fixed_problem(segments);
+  Json row = {{"problem", "fixed durations, one quintic a segment, 16 planes, per axis"},
+              {"segments", segments},
+              {"pieces", segments}};
+  if (segments <= kMostCompared) {
+    const Comparison c = compare_solvers(problem, {}, rounds);
+    row.update({{"iterations", c.interior.iterations},
+                {"time_us", c.interior_us},
+                {"active_set_solved", c.active.status == SplineSolver::Status::solved},
+                {"active_set_steps", c.active.iterations},
+                {"binding", c.binding},
+                {"active_set_us", c.active_us}});
+  } else {
+    SplineSolver solver;
+    SplineSolver::Outcome outcome;
+    const auto timing = compare("fixed", {{"fixed", [&] { outcome = solver.solve(problem, {}); }}},
+                                rounds, Clock::processor);
+    row.update({{"iterations", outcome.iterations}, {"time_us", timing[0].median_us()}});
+  }
+  const double us = row["time_us"];
+  row["us_a_piece"] = us / segments;
+  row["us_a_piece_and_iteration"] = us / segments / row["iterations"].get<int>();
+  return row;
+}
+
+// The soonest flight through a corridor, its pieces made longer by one factor: the nearer to the
+// soonest, the more limits bind.
+Json binding_row(double factor, LimitNorm norm, int rounds) {
+  constexpr int kSegments = 6;
+  const Corridor corridor = wandering_corridor(kSegments);
+  FlatState start, goal;
+  start.position = corridor.waypoints_map.front();
+  goal.position = corridor.waypoints_map.back();
+  const Limits limits{.norm = norm};
+  auto optimizer = TrajectoryOptimizer::create({}).value();
+  const auto soonest = optimizer.optimise(corridor, start, goal, limits);
+  if (!soonest) throw std::runtime_error(soonest.error().message);
+  Plan plan;
+  plan.joints.push_back(start);
+  for (const BezierPiece& piece : soonest->trajectory.pieces) {
+    plan.durations_s.push_back(factor * piece.duration_s);
+    plan.polytopes.push_back(piece.polytope);
+    FlatState end;
+    end.position = piece.control_points.col(5);
+    plan.joints.push_back(end);
+  }
+  plan.reference_s = plan.duration_s();
+  SplineProblem problem;
+  Units units;
+  make_problem({corridor, start, goal, limits}, plan, false, 1.0, HUGE_VAL, problem, units);
+  const Comparison c = compare_solvers(problem, {.gap = 1e-7, .dual_feasibility = 1e-6}, rounds);
+  return {{"limits", norm == LimitNorm::euclidean ? "Euclidean" : "per axis"},
+          {"of_the_soonest", factor},
+          {"pieces", problem.pieces()},
+          {"interior_solved", c.interior.status == SplineSolver::Status::solved},
+          {"active_set_solved", c.active.status == SplineSolver::Status::solved},
+          {"binding", c.binding},
+          {"active_set_steps", c.active.iterations},
+          {"interior_us", c.interior_us},
+          {"active_set_us", c.active_us}};
 }
 
 // optimise() whole: checks, passes, certificate.
@@ -99,6 +177,30 @@ Json scale_row(int segments, int rounds) {
            timing[0].median_us() / solution->pieces / solution->iterations}};
 }
 
+// Both solvers' times over the pieces, as rows of one plot.
+void draw_solvers(Report& report, const Json& cost) {
+  Json points = Json::array();
+  for (const Json& row : cost) {
+    if (!row.contains("active_set_us")) continue;
+    points.push_back(
+        {{"solver", "interior point"}, {"pieces", row["pieces"]}, {"us", row["time_us"]}});
+    if (!row["active_set_solved"]) continue;
+    points.push_back(
+        {{"solver", "active set"}, {"pieces", row["pieces"]}, {"us", row["active_set_us"]}});
+  }
+  report.note("solvers", points);
+  report.draw({.file = "solvers",
+               .title = "Fixed durations, one quintic a segment",
+               .x = "pieces",
+               .y = "us",
+               .x_label = "pieces",
+               .y_label = "median time of the processor [us]",
+               .series = "solver",
+               .log_x = true,
+               .log_y = true,
+               .from = "solvers"});
+}
+
 }  // namespace
 
 void measure_cost(Report& report) {
@@ -112,25 +214,20 @@ void measure_cost(Report& report) {
     rows.push_back(scale_row(segments, std::max(5, rounds / 4)));
   }
   report.note("cost", rows);
-  report.draw({.file = "cost",
-               .title = "Cost of a solve",
-               .x = "pieces",
-               .y = "time_us",
-               .x_label = "pieces",
-               .y_label = "median time of the processor [us]",
-               .series = "problem",
-               .log_x = true,
-               .log_y = true,
-               .from = "cost"});
-  report.draw({.file = "cost_a_piece",
-               .title = "Cost of a piece in an iteration",
-               .x = "pieces",
-               .y = "us_a_piece_and_iteration",
-               .x_label = "pieces",
-               .y_label = "median time of the processor [us]",
-               .series = "problem",
-               .log_x = true,
-               .from = "cost"});
+  draw_solvers(report, rows);
+  Json binding = Json::array();
+  for (const LimitNorm norm : {LimitNorm::per_axis, LimitNorm::euclidean}) {
+    for (const double factor : {1.001, 1.02, 1.05, 1.1, 1.2, 1.5, 2.0}) {
+      binding.push_back(binding_row(factor, norm, rounds));
+    }
+  }
+  report.note("binding", binding);
+  Plot plot{.x = "pieces", .x_label = "pieces", .series = "problem", .log_x = true, .from = "cost"};
+  const std::string label = "median time of the processor [us]";
+  report.draw(plot.of("cost_a_piece", "Cost of a piece in an iteration", "us_a_piece_and_iteration",
+                      label));
+  plot.log_y = true;
+  report.draw(plot.of("cost", "Cost of a solve", "time_us", label));
 }
 
 }  // namespace goshawk::bench

@@ -134,32 +134,15 @@ std::vector<Planner> planners_here(Report& report) {
 }
 
 void draw_by_density(Report& report) {
-  const Json where{{"world", "boxes 6x8x4"}};
-  report.draw({.file = "generation_time",
-               .title = "Plan, from search to trajectory",
-               .x = "density",
-               .y = "plan_ms",
-               .x_label = "density of the grown map",
-               .y_label = "median time [ms]",
-               .series = "planner",
-               .where = where,
-               .log_y = true});
-  report.draw({.file = "length",
-               .title = "Length of the trajectory",
-               .x = "density",
-               .y = "length_m",
-               .x_label = "density of the grown map",
-               .y_label = "median length [m]",
-               .series = "planner",
-               .where = where});
-  report.draw({.file = "mean_speed",
-               .title = "Mean speed, limit 2 m/s",
-               .x = "density",
-               .y = "mean_speed_m_s",
-               .x_label = "density of the grown map",
-               .y_label = "median [m/s]",
-               .series = "planner",
-               .where = where});
+  Plot plot{.x = "density",
+            .x_label = "density of the grown map",
+            .series = "planner",
+            .where = {{"world", "boxes 6x8x4"}}};
+  report.draw(plot.of("length", "Length of the trajectory", "length_m", "median length [m]"));
+  report.draw(plot.of("mean_speed", "Mean speed, limit 2 m/s", "mean_speed_m_s", "median [m/s]"));
+  plot.log_y = true;
+  report.draw(
+      plot.of("generation_time", "Plan, from search to trajectory", "plan_ms", "median time [ms]"));
 }
 
 }  // namespace

@@ -227,6 +227,10 @@ int run(const BenchOptions& o) {
 int bench_plan_command(const Arguments& arguments) {
   CLI::App app("Latency of whole plans over DDS, by stage: compute, and time on the wire.",
                "goshawk bench plan");
+  app.footer(
+      "Examples:\n"
+      "  goshawk bench plan\n"
+      "  goshawk bench plan --launch flight_container -n 1000 --json");
   BenchOptions o;
   o.map.add_to(app);
   app.add_option("--start", o.start, "x,y,z [m]")->capture_default_str();

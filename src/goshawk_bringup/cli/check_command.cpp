@@ -125,6 +125,10 @@ void print(const Judged& judged, const CheckOptions& o) {
 int check_command(const Arguments& arguments) {
   CLI::App app("Judge a flight: the vehicle's body, in its true attitude, against the raw map.",
                "goshawk check");
+  app.footer(
+      "Examples:\n"
+      "  goshawk check flights/DATE\n"
+      "  goshawk check flown.csv --map world.bt --box 0.3,0.3,0.12");
   CheckOptions options;
   options.add_to(app);
   if (const auto status = parse(app, arguments)) return *status;

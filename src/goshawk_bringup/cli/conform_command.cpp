@@ -97,6 +97,11 @@ int conform_command(const Arguments& arguments) {
       "Examine a stage, whoever wrote it: good and bad requests on its topics, every answer "
       "judged.",
       "goshawk conform");
+  app.footer(
+      "Examples:\n"
+      "  goshawk conform path_search\n"
+      "  goshawk conform path_search --launch mine.yaml --input flight.mcap\n"
+      "  goshawk conform tracker --against-running");
   ConformOptions o;
   app.add_option("stage", o.kit.stage,
                  "path_search, corridor_builder, trajectory_optimizer, tracker or map_server")

@@ -361,6 +361,12 @@ bool is_wrong_call(ErrorCode code) {
 int fly_command(const Arguments& arguments) {
   CLI::App app("Fly: start every stage as a process of its own, send the goals, judge the flight.",
                "goshawk fly");
+  app.footer(
+      "Examples:\n"
+      "  goshawk fly\n"
+      "  goshawk fly --map office.bt --start 1,1,1 --goal 8,4,1.5 --goal 1,1,1\n"
+      "  goshawk fly --random 5 --seed 7 --launch flight_container -p simulator:wind_x_m_s:=2\n"
+      "  goshawk view shows the newest flight, goshawk check judges it again.");
   FlyOptions options;
   options.add_to(app);
   if (const auto status = parse(app, arguments)) return *status;

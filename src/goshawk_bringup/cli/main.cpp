@@ -9,6 +9,7 @@
 #include "goshawk/introspection/topic_command.hpp"
 #include "goshawk/recording/commands.hpp"
 #include "goshawk/runtime/parameters.hpp"
+#include "goshawk/runtime/version.hpp"
 #include "verbs.hpp"
 
 namespace {
@@ -52,6 +53,14 @@ void print_help() {
       "--help for each\n\n");
   for (const Verb& verb : kVerbs) std::printf("  %-8s %s\n", verb.name, verb.what);
   std::printf(
+      "\nA first quarter of an hour:\n"
+      "  goshawk fly                  a flight through a made world; its folder is named at the "
+      "end\n"
+      "  goshawk view                 the same, to look at\n"
+      "  goshawk launch flight        all stages, until Ctrl-C; in another terminal:\n"
+      "  goshawk topic list           what they say to each other\n"
+      "  goshawk param set /navigator v_max_m_s 1\n"
+      "  goshawk doctor               where something does not work\n"
       "\nDDS domain: ROS_DOMAIN_ID (default 0). Interfaces: GOSHAWK_INTERFACES, loopback by "
       "default.\nExit status: 0 done, 1 not done (the code says why), 2 a wrong call.\n");
 }
@@ -72,6 +81,10 @@ int main(int argc, char** argv) {
   if (arguments.empty() || arguments[0] == "--help" || arguments[0] == "-h") {
     print_help();
     return arguments.empty() ? cli::kWrongCall : cli::kDone;
+  }
+  if (arguments[0] == "--version") {
+    std::printf("goshawk %s\n", runtime::version().c_str());
+    return cli::kDone;
   }
   const std::string name = arguments.front();
   arguments.erase(arguments.begin());

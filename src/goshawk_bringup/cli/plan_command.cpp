@@ -110,6 +110,11 @@ int run(const PlanOptions& options, const std::string& map_file) {
 
 int plan_command(const Arguments& arguments) {
   CLI::App app("Plan once, in this process, without DDS, and print the result.", "goshawk plan");
+  app.footer(
+      "Examples:\n"
+      "  goshawk plan\n"
+      "  goshawk plan --map office.bt --start 1,1,1 --goal 8,4,1.5 --save pictures\n"
+      "  goshawk plan --v-max 1 --json");
   PlanOptions options;
   options.map.add_to(app);
   app.add_option("--start", options.start, "x,y,z [m] frame map")->capture_default_str();

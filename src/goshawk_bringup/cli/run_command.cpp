@@ -10,7 +10,11 @@ constexpr const char* kRunHelp =
     "usage: goshawk run COMPONENT[:NODE_NAME] ... [--ros-args -r from:=to -p name:=value\n"
     "                   --params-file FILE --log-level LEVEL]\n\n"
     "Starts one component, or several in one process, until Ctrl-C.\n"
-    "goshawk param describe COMPONENT lists its parameters.\n";
+    "goshawk param describe COMPONENT lists its parameters.\n\n"
+    "Examples:\n"
+    "  goshawk run path_search --ros-args -p planner:=astar\n"
+    "  goshawk run path_search corridor_builder trajectory_optimizer --ros-args -r __ns:=/uav1\n"
+    "  goshawk run tracker:my_tracker --ros-args --params-file my.yaml --log-level debug\n";
 
 // Becomes a script of ours. @return only where that fails
 int become_script(const std::string& name, const Arguments& arguments) {

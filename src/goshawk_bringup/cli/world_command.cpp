@@ -112,6 +112,10 @@ int world_command(const Arguments& arguments) {
       "Make a world from a few numbers, or convert a map. The same call gives the same "
       "bytes on every machine.",
       "goshawk world");
+  app.footer(
+      "Examples:\n"
+      "  goshawk world forest.bt --kind forest --size 20,20,5 --density 0.2 --seed 7\n"
+      "  goshawk world office.bt --convert scan.pcd --resolution 0.1");
   WorldOptions o;
   app.add_option("output", o.output, "file to write: .bt or .ot")->required();
   app.add_option("--kind", o.spec.kind, "boxes, forest, office or noise")->capture_default_str();

@@ -251,7 +251,10 @@ def count(value):
 def parse_options():
     parser = argparse.ArgumentParser(
         prog="goshawk campaign", description="Fly many random missions, several at once, each "
-        "judged by the second opinion. Flown again into the same folder, it goes on.")
+        "judged by the second opinion.\nFlown again into the same folder, it goes on.",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        epilog="examples:\n  goshawk campaign --missions 50 --goals 3 --output campaign\n"
+        "  goshawk campaign --kinds forest,office --densities 0.1,0.2,0.3 --wind 0,2")
     add = parser.add_argument
     add("--missions", type=count, default=20, help="worlds (default 20)")
     add("--goals", type=count, default=5, help="flights in each world (default 5)")

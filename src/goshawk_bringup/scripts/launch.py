@@ -312,8 +312,12 @@ def main():
         arguments, extra = arguments[:at], arguments[at + 1:]
     parser = argparse.ArgumentParser(
         prog="goshawk launch", description="Start what a launch file lists, supervised, until "
-        "Ctrl-C. Options behind --ros-args go to every component, as in "
-        "--ros-args -p path_search:planner:=astar --params-file my.yaml")
+        "Ctrl-C. Options behind --ros-args go to every\ncomponent, as in "
+        "--ros-args -p path_search:planner:=astar --params-file my.yaml",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        epilog="examples:\n  goshawk launch flight\n"
+        "  goshawk launch flight_container --log-dir logs --ros-args -p navigator:v_max_m_s:=1\n"
+        "  goshawk launch --list")
     parser.add_argument("file", help="launch file, or the name of an installed one (flight)")
     parser.add_argument("--log-dir", help="folder for the logs (default: a new one in /tmp)")
     parser.add_argument("--json", action="store_true", help="one JSON object a line")

@@ -162,11 +162,11 @@ Status Canvas::save(const std::filesystem::path& png) const {
 }
 
 Color speed_color(double s) {
-  constexpr std::array<Color, 5> kStops{{{0.20, 0.28, 0.70},
-                                         {0.10, 0.58, 0.78},
-                                         {0.30, 0.72, 0.40},
-                                         {0.95, 0.70, 0.15},
-                                         {0.84, 0.15, 0.16}}};
+  constexpr std::array<Color, 5> kStops{{{0.13, 0.36, 0.92},
+                                         {0.45, 0.28, 0.88},
+                                         {0.76, 0.20, 0.62},
+                                         {0.90, 0.25, 0.28},
+                                         {0.98, 0.54, 0.10}}};
   const double x = std::clamp(s, 0.0, 1.0) * (kStops.size() - 1);
   const auto i = std::min(std::size_t(x), kStops.size() - 2);
   const double f = x - double(i);

@@ -80,7 +80,8 @@ class Canvas {
   std::unique_ptr<cairo_t, Destroy> context_;
 };
 
-/// @param s in [0, 1], slow to fast @return blue over green to red
+/// @param s in [0, 1], slow to fast @return blue over purple to orange: bluer to yellower all
+/// the way, which every kind of colour vision tells apart; the flight's page has the same
 Color speed_color(double s);
 
 }  // namespace goshawk::flight_report

@@ -24,7 +24,7 @@ constexpr std::size_t kGuidePoints = 150;
 constexpr Color kCorridor{0.16, 0.50, 0.72, 0.10};
 constexpr Color kCorridorEdge{0.16, 0.50, 0.72, 0.60};
 constexpr Color kRawPath{0.45, 0.30, 0.60};
-constexpr Color kPruned{0.80, 0.16, 0.52};
+constexpr Color kPruned{0.35, 0.40, 0.05};
 constexpr Color kFlown{0.05, 0.05, 0.05};
 constexpr Color kStart{0.10, 0.60, 0.25};
 constexpr Color kGoal{0.80, 0.10, 0.10};

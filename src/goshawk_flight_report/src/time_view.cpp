@@ -19,7 +19,7 @@ constexpr double kLeft_px = 84.0, kTop_px = 66.0, kPanel_px = 200.0, kGap_px = 2
 constexpr double kLegend_px = 190.0, kBottom_px = 58.0;
 constexpr int kPanels = 4;
 
-constexpr std::array<Color, 3> kAxes{{{0.80, 0.20, 0.20}, {0.15, 0.55, 0.25}, {0.16, 0.36, 0.75}}};
+constexpr std::array<Color, 3> kAxes{{{0.84, 0.37, 0.0}, {0.0, 0.62, 0.45}, {0.0, 0.45, 0.70}}};
 constexpr Color kPlanned{0.16, 0.40, 0.70};
 constexpr Color kFlown{0.05, 0.05, 0.05};
 constexpr Color kLimit{0.80, 0.12, 0.12};
@@ -94,11 +94,11 @@ std::vector<Vec2> flown_acceleration(const Flight& flight) {
   return points;
 }
 
-std::vector<Vec2> tracking_error_cm(const Flight& flight) {
+std::vector<Vec2> tracking_error_mm(const Flight& flight) {
   std::vector<Vec2> points;
   for (const FlownSample& s : flight.flown) {
     const auto state = flight.planned_at(s.t_s);
-    if (state) points.emplace_back(s.t_s, 100.0 * (s.position_map - state->position).norm());
+    if (state) points.emplace_back(s.t_s, 1e3 * (s.position_map - state->position).norm());
   }
   return points;
 }
@@ -134,7 +134,7 @@ class TimePicture {
           of_planned(states, [norm](const FlatState& s) { return size_of(s.acceleration, norm); })},
          {"flown", {kFlown, 1.2, 5.0}, flown_acceleration(flight_)}},
         flight_.limits.a_max_m_s2);
-    panel("tracking error [cm]", {{"distance", {kPlanned, 1.6}, tracking_error_cm(flight_)}},
+    panel("tracking error [mm]", {{"distance", {kPlanned, 1.6}, tracking_error_mm(flight_)}},
           std::nullopt);
     return canvas_.save(png);
   }
@@ -224,20 +224,20 @@ class TimePicture {
     }
   }
 
-  void error_summary(const std::vector<Vec2>& errors_cm, const Vec2& at) {
-    if (errors_cm.empty()) {
+  void error_summary(const std::vector<Vec2>& errors_mm, const Vec2& at) {
+    if (errors_mm.empty()) {
       canvas_.text(at, "nothing to compare", {});
       return;
     }
     double squares = 0.0, largest = 0.0;
-    for (const Vec2& p : errors_cm) {
+    for (const Vec2& p : errors_mm) {
       squares += p.y() * p.y();
       largest = std::max(largest, p.y());
     }
     char text[64];
-    std::snprintf(text, sizeof text, "rms %.2f cm", std::sqrt(squares / double(errors_cm.size())));
+    std::snprintf(text, sizeof text, "rms %.1f mm", std::sqrt(squares / double(errors_mm.size())));
     canvas_.text(at, text, {});
-    std::snprintf(text, sizeof text, "largest %.2f cm", largest);
+    std::snprintf(text, sizeof text, "largest %.1f mm", largest);
     canvas_.text(at + Vec2(0.0, 22.0), text, {});
   }
 

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <fstream>
 #include <iostream>
+#include <map>
 #include <sstream>
 
 #include "doctor.hpp"
+#include "goshawk/conversions/geometry.hpp"
+#include "nav_msgs.h"
 #include "session.hpp"
 #include "text.hpp"
 
@@ -13,6 +16,8 @@ namespace goshawk::introspection {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kStamps = 20;  // messages whose age is looked at
 
 void add(std::vector<Finding>& all, std::vector<Finding> more) {
   std::ranges::move(more, std::back_inserter(all));
@@ -37,30 +42,73 @@ Finding company(const std::vector<runtime::ParticipantInfo>& participants, int d
   }
   return {"domain " + std::to_string(domain), Level::note,
           others.empty() ? "nobody is here, nor in another domain of this machine"
-                         : "nobody is here, but there is in " + others +
-                               ": set ROS_DOMAIN_ID to see that one"};
+                         : "nobody is here, but there is in " + others,
+          "what is not in this domain is neither seen nor heard",
+          others.empty() ? "start something: goshawk launch flight"
+                         : "set ROS_DOMAIN_ID to look there"};
+}
+
+// How old odometry is when it comes: clocks of two machines that differ show in it.
+std::vector<Finding> check_odometry(Session& session, double timeout_s) {
+  const auto endpoints = session.context().endpoints();
+  const auto has = [&](const auto& wanted) { return std::ranges::any_of(endpoints, wanted); };
+  // Simulated time is no clock of a machine.
+  if (has([](const auto& e) { return e.writer && e.topic == "/clock"; })) return {};
+  std::map<std::string, std::vector<double>> ages_s;
+  for (const auto& e : endpoints) {
+    if (!e.writer || e.type != "nav_msgs/msg/Odometry" || ages_s.contains(e.topic)) continue;
+    session.node().subscribe<nav_msgs::msg::Odometry>(
+        e.topic, runtime::Qos::best_effort(),
+        [&ages = ages_s[e.topic]](const auto& m, const runtime::MessageInfo& info) {
+          ages.push_back(1e-9 * double(info.received_ns - conversions::to_ns(m.header().stamp())));
+        });
+  }
+  const auto enough = [&] {
+    return std::ranges::all_of(ages_s, [](const auto& a) { return a.second.size() >= kStamps; });
+  };
+  session.wait_for(timeout_s, enough);
+  std::vector<Finding> findings;
+  for (const auto& [topic, ages] : ages_s) {
+    if (!ages.empty()) findings.push_back(check_stamps(topic, ages));
+  }
+  return findings;
+}
+
+bool has_node(const runtime::Context& context, const std::string& name) {
+  return std::ranges::any_of(context.participants(), [&](const auto& p) {
+    return std::ranges::any_of(p.nodes, [&](const auto& n) { return n.ends_with("/" + name); });
+  });
 }
 
 std::vector<Finding> examine(double timeout_s) {
+  const ClockWatch clock;
   std::vector<Finding> findings = check_machine();
+  add(findings, check_versions());
   add(findings, check_environment());
   auto session = Session::open();
   if (!session) {
-    findings.push_back({"domain", Level::fault, session.error().message});
+    findings.push_back({"domain", Level::fault, session.error().message,
+                        "no stage can join it either", "as the sentence says"});
     return findings;
   }
   (*session)->settle(timeout_s);
   auto& context = (*session)->context();
+  add(findings, check_ports(context.domain(), has_node(context, "viewer_bridge")));
   findings.push_back(company(context.participants(), context.domain()));
   add(findings, check_topics(context.participants(), context.endpoints()));
+  add(findings, check_odometry(**session, timeout_s));
+  add(findings, clock.findings());
   return findings;
 }
 
 void print(const std::vector<Finding>& findings) {
+  const std::string margin(9, ' ');
   for (const auto& f : findings) {
     const std::string level = to_string(f.level);
     std::cout << level << std::string(9 - level.size(), ' ') << f.about << ": " << f.message
               << "\n";
+    if (!f.why.empty()) std::cout << margin << "why:  " << f.why << "\n";
+    if (!f.mend.empty()) std::cout << margin << "mend: " << f.mend << "\n";
   }
 }
 
@@ -70,7 +118,11 @@ int doctor(const CommonOptions& common) {
   Json list = Json::array();
   for (const auto& f : findings) {
     worst = std::max(worst, f.level);
-    list.push_back({{"about", f.about}, {"level", to_string(f.level)}, {"message", f.message}});
+    list.push_back({{"about", f.about},
+                    {"level", to_string(f.level)},
+                    {"message", f.message},
+                    {"why", f.why},
+                    {"mend", f.mend}});
   }
   if (common.json) {
     std::cout << to_line({{"ok", worst < Level::fault}, {"findings", list}}) << std::endl;
@@ -89,7 +141,13 @@ int doctor_command(std::vector<std::string> arguments) {
   return run_one(
       "doctor",
       {"doctor", "looks at machine, settings and domain, and says what does not fit",
-       [](CLI::App&, CommonOptions& common) { return [&common] { return doctor(common); }; }},
+       [](CLI::App& app, CommonOptions& common) {
+         app.footer(
+             "fine: nothing to do; note: worth knowing; warning: works, but not well; fault: "
+             "does not work.\nEach says why it matters, and what mends it. Status 1 where "
+             "there is a fault.");
+         return [&common] { return doctor(common); };
+       }},
       std::move(arguments));
 }
 

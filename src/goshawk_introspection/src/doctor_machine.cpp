@@ -2,13 +2,12 @@
 #include <net/if.h>
 #include <sys/resource.h>
 #include <sys/statvfs.h>
-#include <sys/timex.h>
 #include <unistd.h>
 
 #include <cstdlib>
-#include <ctime>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <thread>
 
 #include "doctor.hpp"
@@ -16,49 +15,55 @@
 namespace goshawk::introspection {
 namespace {
 
-constexpr long kSocketBuffer = 4 << 20;            // [byte] what runtime's Context asks for
-constexpr double kLeastSharedMemory = 32 << 20;    // [byte] for maps of 10^8 voxels
-constexpr std::time_t kNoEarlier = 1'767'225'600;  // [s] 2026-01-01: no flight was before
+constexpr long kSocketBuffer = 4 << 20;          // [byte] what runtime's Context asks for
+constexpr double kLeastSharedMemory = 32 << 20;  // [byte] for maps of 10^8 voxels
+constexpr double kGiB = 1 << 30;
+constexpr double kLeastDisk = 1.0;  // [GiB]
+constexpr double kNoDisk = 0.1;     // [GiB]
 
 Finding check_cores() {
   const unsigned cores = std::thread::hardware_concurrency();
   if (cores >= 2) return {"processor", Level::fine, std::to_string(cores) + " cores"};
-  return {"processor", Level::warning,
-          "one core for seven stages: prefer one process, with goshawk launch flight_container"};
+  return {"processor", Level::warning, "one core",
+          "seven stages share it, and each hand-over between them waits for a turn",
+          "prefer one process: goshawk launch flight_container"};
 }
 
 Finding check_loopback() {
   ifaddrs* list = nullptr;
-  if (getifaddrs(&list) != 0) return {"loopback", Level::fault, "interfaces cannot be listed"};
+  if (getifaddrs(&list) != 0) {
+    return {"loopback", Level::fault, "interfaces cannot be listed",
+            "nothing can be said of the way between the stages", "ask who runs this machine"};
+  }
   bool up = false;
   for (const ifaddrs* i = list; i != nullptr; i = i->ifa_next) {
     up = up || ((i->ifa_flags & IFF_LOOPBACK) != 0 && (i->ifa_flags & IFF_UP) != 0);
   }
   freeifaddrs(list);
   if (up) return {"loopback", Level::fine, "is up"};
-  return {"loopback", Level::fault, "is down, so stages cannot talk: ip link set lo up"};
+  return {"loopback", Level::fault, "is down", "the stages of one machine talk over it",
+          "ip link set lo up"};
 }
 
 Finding check_buffer(const std::string& name) {
   const std::string about = "net.core." + name;
   long most = 0;
   if (!(std::ifstream("/proc/sys/net/core/" + name) >> most)) {
-    return {about, Level::note, "cannot be read here"};
+    return {about, Level::note, "cannot be read here", "whole maps come late where it is small",
+            "sysctl " + about + " outside shows it"};
   }
   if (most >= kSocketBuffer) return {about, Level::fine, std::to_string(most) + " byte"};
-  return {about, Level::warning,
-          std::to_string(most) +
-              " byte: whole maps of millions of voxels come late or in several "
-              "tries: sysctl -w " +
-              about + "=" + std::to_string(kSocketBuffer)};
+  return {about, Level::warning, std::to_string(most) + " byte",
+          "whole maps of millions of voxels come late, or in several tries",
+          "sysctl -w " + about + "=" + std::to_string(kSocketBuffer)};
 }
 
 Finding check_shared_memory() {
   struct statvfs info {};
   if (statvfs("/dev/shm", &info) != 0 || access("/dev/shm", W_OK) != 0) {
-    return {"shared memory", Level::note,
-            "/dev/shm is not writable: a profile file that uses shared memory will not work; "
-            "loopback does"};
+    return {"shared memory", Level::note, "/dev/shm is not writable",
+            "a profile file that uses shared memory will not work; loopback, the default, does",
+            "mount a tmpfs there, or give the container one (docker run --shm-size 256m)"};
   }
   int left = 0;
   std::error_code ignored;
@@ -68,22 +73,32 @@ Finding check_shared_memory() {
   const double free_bytes = double(info.f_bavail) * double(info.f_frsize);
   const std::string files = left == 0 ? "" : ", " + std::to_string(left) + " segments of Fast DDS";
   if (free_bytes < kLeastSharedMemory) {
-    return {"shared memory", Level::warning,
-            "/dev/shm is nearly full" + files + ": fastdds shm clean removes what no process uses"};
+    return {"shared memory", Level::warning, "/dev/shm is nearly full" + files,
+            "a profile file that uses shared memory fails where there is none left",
+            "fastdds shm clean removes what no process uses"};
   }
   return {"shared memory", Level::fine,
           std::to_string(long(free_bytes / (1 << 20))) + " MiB free" + files};
 }
 
-Finding check_clock() {
-  if (std::time(nullptr) < kNoEarlier) {
-    return {"clock", Level::warning, "is before 2026: set it, as stamps are compared"};
+// Where recordings and flight folders are written unless told otherwise.
+Finding check_disk() {
+  struct statvfs info {};
+  if (statvfs(".", &info) != 0) {
+    return {"disk", Level::note, "this folder cannot be looked at", "recordings go here by default",
+            "work in a folder that you may write to"};
   }
-  timex state{};
-  const bool synchronised = adjtimex(&state) != TIME_ERROR && (state.status & STA_UNSYNC) == 0;
-  if (synchronised) return {"clock", Level::fine, "is synchronised"};
-  return {"clock", Level::note,
-          "is not synchronised: no harm on one machine; for stages on several, run chrony"};
+  const double free_gib = double(info.f_bavail) * double(info.f_frsize) / kGiB;
+  char text[64];
+  std::snprintf(text, sizeof text, "%.1f GiB free here", free_gib);
+  const char* why = "a recording stops where the disk is full; what was written stays readable";
+  const char* mend = "make room, or record elsewhere: goshawk record -o FILE, fly --output FOLDER";
+  if (access(".", W_OK) != 0) {
+    return {"disk", Level::warning, "this folder is not writable",
+            "recordings and flight folders go here by default", mend};
+  }
+  if (free_gib >= kLeastDisk) return {"disk", Level::fine, text};
+  return {"disk", free_gib < kNoDisk ? Level::fault : Level::warning, text, why, mend};
 }
 
 Finding check_priority() {
@@ -91,25 +106,34 @@ Finding check_priority() {
   const bool may =
       geteuid() == 0 || (getrlimit(RLIMIT_RTPRIO, &limit) == 0 && limit.rlim_cur >= 20);
   if (may) return {"real-time priority", Level::fine, "is permitted"};
-  return {"real-time priority", Level::note,
-          "is not permitted, so a busy machine delays the control loop: add '" +
-              std::string(std::getenv("USER") != nullptr ? std::getenv("USER") : "you") +
+  return {"real-time priority", Level::note, "is not permitted",
+          "a busy machine delays the control loop",
+          "add '" + std::string(std::getenv("USER") != nullptr ? std::getenv("USER") : "you") +
               " - rtprio 20' to /etc/security/limits.conf"};
 }
 
 Finding check_profile() {
   const char* path = std::getenv("FASTRTPS_DEFAULT_PROFILES_FILE");
   if (path == nullptr) return {"profile file", Level::fine, "none: UDP on the chosen interfaces"};
-  std::ifstream file(path);
-  char first = 0;
-  if (!(file >> first)) {
-    return {"profile file", Level::fault,
-            std::string(path) + " cannot be read: mend FASTRTPS_DEFAULT_PROFILES_FILE or unset it"};
+  std::stringstream text;
+  text << std::ifstream(path).rdbuf();
+  const std::string name = path, xml = text.str();
+  const char* why = "it decides alone about transports, and Goshawk's own choice is off";
+  const char* mend = "mend FASTRTPS_DEFAULT_PROFILES_FILE, or unset it";
+  const auto first = xml.find_first_not_of(" \t\r\n");
+  if (first == std::string::npos) {
+    return {"profile file", Level::fault, name + " cannot be read, or is empty", why, mend};
   }
-  if (first != '<') {
-    return {"profile file", Level::fault, std::string(path) + " is not XML: Fast DDS ignores it"};
+  if (xml[first] != '<' && !xml.starts_with("\xEF\xBB\xBF<")) {
+    return {"profile file", Level::fault, name + " is not XML: Fast DDS ignores it", why, mend};
   }
-  return {"profile file", Level::note, std::string(path) + " decides about transports"};
+  if (xml.find("is_default_profile=\"true\"") == std::string::npos) {
+    return {"profile file", Level::warning, name + " has no profile with is_default_profile=true",
+            "participants then use Fast DDS' defaults: multicast, on every interface",
+            "mark the participant's profile so"};
+  }
+  return {"profile file", Level::note, name + " decides about transports",
+          "Goshawk's own choice, UDP on GOSHAWK_INTERFACES, is off", "unset it to have that back"};
 }
 
 }  // namespace
@@ -131,7 +155,7 @@ std::string to_string(Level level) {
 std::vector<Finding> check_machine() {
   return {
       check_cores(),         check_loopback(), check_buffer("rmem_max"), check_buffer("wmem_max"),
-      check_shared_memory(), check_clock(),    check_priority()};
+      check_shared_memory(), check_disk(),     check_priority()};
 }
 
 std::vector<Finding> check_environment() {
@@ -141,7 +165,8 @@ std::vector<Finding> check_environment() {
     findings.push_back(
         {"domain", Level::fine, std::to_string(options->domain) + " on " + options->interfaces});
   } else {
-    findings.push_back({"domain", Level::fault, options.error().message});
+    findings.push_back({"domain", Level::fault, options.error().message, "no process can join it",
+                        "set it to a number from 0 to 232, or unset it"});
   }
   return findings;
 }

@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <map>
 #include <set>
-#include <sstream>
 
 #include "doctor.hpp"
+#include "goshawk/runtime/version.hpp"
 
 namespace goshawk::introspection {
 namespace {
@@ -37,10 +37,11 @@ void check_pair(const Owners& names, const EndpointInfo& writer, const EndpointI
     asks += std::string(asks.empty() ? "" : "; and ") + "latched, but volatile is offered";
   }
   if (asks.empty()) return;
-  findings.push_back({"topic " + writer.topic, Level::fault,
-                      who(names, reader) + " does not hear " + who(names, writer) +
-                          ": it asks for " + asks +
-                          ": let the reader ask for less, or the writer offer more"});
+  findings.push_back(
+      {"topic " + writer.topic, Level::fault,
+       who(names, reader) + " does not hear " + who(names, writer) + ": it asks for " + asks,
+       "a reader that asks for more than is offered gets nothing, and no error",
+       "let the reader ask for less, or the writer offer more"});
 }
 
 void check_types(const std::string& topic, const std::vector<EndpointInfo>& ends,
@@ -50,9 +51,9 @@ void check_types(const std::string& topic, const std::vector<EndpointInfo>& ends
   if (types.size() < 2) return;
   std::string list;
   for (const auto& type : types) list += (list.empty() ? "" : ", ") + type;
-  findings.push_back({"topic " + topic, Level::fault,
-                      "has several types, which do not hear each other: " + list +
-                          ": give the topic one type, or one of them another name"});
+  findings.push_back({"topic " + topic, Level::fault, "has several types: " + list,
+                      "who has another type is not heard",
+                      "give the topic one type, or one of them another name (-r from:=to)"});
 }
 
 void check_topic(const Owners& names, const std::string& topic,
@@ -72,9 +73,15 @@ void check_topic(const Owners& names, const std::string& topic,
     }
   }
   if (findings.size() > before) return;
-  if (writers == 0 && readers > 0) {
+  // Whoever asks comes and goes.
+  if (writers == 0 && readers > 0 && topic != "/parameter_request") {
+    std::set<std::string> all;
+    for (const auto& e : ends) all.insert(who(names, e));
+    std::string list;
+    for (const auto& name : all) list += (list.empty() ? "" : ", ") + name;
     findings.push_back({"topic " + topic, Level::note,
-                        "is read by " + who(names, ends.front()) + ", but nobody writes it"});
+                        "is read by " + list + ", but nobody writes it", "that stage waits for it",
+                        "start who writes it, if it is wanted"});
   }
 }
 
@@ -86,11 +93,30 @@ void check_node_names(const std::vector<ParticipantInfo>& participants,
   }
   for (const auto& [node, n] : count) {
     if (n < 2) continue;
-    findings.push_back({"node " + node, Level::warning,
-                        std::to_string(n) +
-                            " nodes have this name: start one of them with "
-                            "another, as in goshawk run COMPONENT:NAME, or end the older one"});
+    findings.push_back({"node " + node, Level::warning, std::to_string(n) + " nodes have this name",
+                        "each answers every request, and the others take the first answer",
+                        "start one of them with another, as in goshawk run COMPONENT:NAME, or end "
+                        "the older one"});
   }
+}
+
+void check_same_version(const Owners& names, const std::vector<ParticipantInfo>& participants,
+                        std::vector<Finding>& findings) {
+  std::map<std::string, std::string> who_has;  // by version; this program's own among them
+  who_has[runtime::version()] = "this program";
+  for (const auto& p : participants) {
+    if (p.version.empty()) continue;  // another program of DDS
+    std::string& list = who_has[p.version];
+    list += (list.empty() ? "" : ", ") + names.at(p.guid_prefix);
+  }
+  if (who_has.size() < 2) return;
+  std::string text;
+  for (const auto& [version, list] : who_has) {
+    text += (text.empty() ? "" : "; ") + version + ": " + list;
+  }
+  findings.push_back({"versions in the domain", Level::warning, text,
+                      "before 1.0 a minor version may change messages, and those are not heard",
+                      "install one version everywhere, and start again what is older"});
 }
 
 }  // namespace
@@ -102,26 +128,9 @@ std::vector<Finding> check_topics(const std::vector<ParticipantInfo>& participan
   std::map<std::string, std::vector<EndpointInfo>> topics;
   for (const auto& e : endpoints) topics[e.topic].push_back(e);
   const Owners names = names_of(participants);
+  check_same_version(names, participants, findings);
   for (const auto& [topic, ends] : topics) check_topic(names, topic, ends, findings);
   return findings;
-}
-
-std::vector<int> domains_in_use(const std::string& udp_table) {
-  // Unicast discovery of participant p in domain d listens at port 7400 + 250 d + 10 + 2 p.
-  constexpr int kBase = 7400, kPerDomain = 250, kFirst = 10, kLast = 10 + 2 * 60;
-  std::set<int> domains;
-  std::istringstream lines(udp_table);
-  std::string line;
-  std::getline(lines, line);  // headings
-  while (std::getline(lines, line)) {
-    const auto colon = line.find(':', line.find(':') + 1);
-    if (colon == std::string::npos) continue;
-    const int port = int(std::strtol(line.substr(colon + 1, 4).c_str(), nullptr, 16));
-    const int offset = (port - kBase) % kPerDomain;
-    if (port < kBase || offset < kFirst || offset > kLast || offset % 2 != 0) continue;
-    domains.insert((port - kBase) / kPerDomain);
-  }
-  return {domains.begin(), domains.end()};
 }
 
 }  // namespace goshawk::introspection

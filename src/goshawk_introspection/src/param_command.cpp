@@ -74,8 +74,8 @@ int describe(const CommonOptions& common, const std::string& name, const Names& 
 }
 
 // A verb on a node, and on what follows the node's name.
-Verb verb(const std::string& name, const std::string& summary, const std::string& rest,
-          const std::string& about_rest, std::size_t least_rest,
+Verb verb(const std::string& name, const std::string& summary, const std::string& examples,
+          const std::string& rest, const std::string& about_rest, std::size_t least_rest,
           int (*run)(const CommonOptions&, const std::string&, const Names&)) {
   return {name, summary,
           [=](CLI::App& app, CommonOptions& common) {
@@ -86,6 +86,7 @@ Verb verb(const std::string& name, const std::string& summary, const std::string
               auto* option = app.add_option(rest, *names, about_rest);
               if (least_rest > 0) option->required()->expected(int(least_rest), 1000);
             }
+            app.footer("Examples:\n" + examples);
             return [&common, node, names, run] { return run(common, *node, *names); };
           },
           kTimeout_s};
@@ -96,6 +97,7 @@ Verb list_verb() {
           [](CLI::App& app, CommonOptions& common) {
             auto node = std::make_shared<std::string>();
             app.add_option("node", *node, "as goshawk node list shows it");
+            app.footer("Examples:\n  goshawk param list\n  goshawk param list /navigator");
             return [&common, node] {
               return node->empty() ? list_components(common) : list_parameters(common, *node);
             };
@@ -112,6 +114,10 @@ Verb describe_verb() {
                            "as goshawk run takes it; or /NODE, which runs, with its values")
                 ->required();
             app.add_option("name", *names, "of parameters; none: all");
+            app.footer(
+                "Examples:\n  goshawk param describe tracker\n"
+                "  goshawk param describe path_search planner z_weight\n"
+                "  goshawk param describe /uav1/path_search");
             return [&common, name, names] { return describe(common, *name, *names); };
           },
           kTimeout_s};
@@ -122,14 +128,20 @@ Verb describe_verb() {
 int param_command(std::vector<std::string> arguments) {
   static const std::vector<Verb> kVerbs = {
       list_verb(),
-      verb("get", "values as they are now: param get NODE [NAME ...]", "name",
-           "of parameters; none: all", 0, &get_parameters),
+      verb("get", "values as they are now: param get NODE [NAME ...]",
+           "  goshawk param get /navigator v_max_m_s\n  goshawk param get /uav1/tracker --json",
+           "name", "of parameters; none: all", 0, &get_parameters),
       verb("set", "changes a node that runs: param set NODE NAME VALUE [NAME VALUE ...]",
+           "  goshawk param set /navigator v_max_m_s 1 a_max_m_s2 0.8\n"
+           "  goshawk param set /path_search planner astar\n"
+           "goshawk param describe COMPONENT says what takes effect at run time.",
            "assignments", "NAME VALUE, and more of them; all are set at once, or none", 1,
            &set_parameters),
       describe_verb(),
-      verb("dump", "all values, as a file for --params-file", "", "", 0,
-           [](const CommonOptions& common, const std::string& node, const Names&) {
+      verb("dump", "all values, as a file for --params-file",
+           "  goshawk param dump /navigator > my.yaml\n"
+           "  goshawk launch flight --ros-args --params-file my.yaml",
+           "", "", 0, [](const CommonOptions& common, const std::string& node, const Names&) {
              return dump_parameters(common, node);
            })};
   return run_verb("param", kVerbs, std::move(arguments));

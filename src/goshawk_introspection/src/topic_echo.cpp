@@ -54,6 +54,11 @@ Verb topic_echo_verb() {
                 ->check(CLI::Range(1, 1'000'000'000))
                 ->excludes(once);
             app.add_flag("--no-arr", options->short_arrays, "long lists as their length");
+            app.footer(
+                "Examples:\n"
+                "  goshawk topic echo /stage_report\n"
+                "  goshawk topic echo /map/voxels --once --no-arr\n"
+                "  goshawk topic echo /odom --json -n 100 > odom.jsonl");
             return [&common, options] { return echo(common, *options); };
           }};
 }

@@ -137,6 +137,7 @@ Verb topic_info_verb() {
   return {"info", "who writes and reads a topic", [](CLI::App& app, CommonOptions& common) {
             auto topic = std::make_shared<std::string>();
             app.add_option("topic", *topic, "its name")->required();
+            app.footer("Example:\n  goshawk topic info /map/voxels");
             return [&common, topic] { return info(common, *topic); };
           }};
 }

@@ -144,7 +144,7 @@ int bw(const CommonOptions& common, const MeasureOptions& options) {
 
 Verb measure_verb(const char* name, const char* summary,
                   int (*run)(const CommonOptions&, const MeasureOptions&)) {
-  return {name, summary, [run](CLI::App& app, CommonOptions& common) {
+  return {name, summary, [run, name](CLI::App& app, CommonOptions& common) {
             auto options = std::make_shared<MeasureOptions>();
             app.add_option("topic", options->read.topic, "its name")->required();
             app.add_option("-w,--window", options->window, "newest messages that count")
@@ -152,6 +152,7 @@ Verb measure_verb(const char* name, const char* summary,
                 ->capture_default_str();
             app.add_option("-n", options->read.count, "that many messages, then end")
                 ->check(CLI::Range(1, 1'000'000'000));
+            app.footer("Example:\n  goshawk topic " + std::string(name) + " /odom -n 500");
             return [&common, options, run] { return run(common, *options); };
           }};
 }

@@ -173,6 +173,11 @@ Verb topic_pub_verb() {
             app.add_option("-r,--rate", options->rate_hz, "[Hz]")
                 ->check(CLI::Range(1e-3, 1e5))
                 ->capture_default_str();
+            app.footer(
+                "Examples:\n"
+                "  goshawk topic pub /goal_pose geometry_msgs/msg/PoseStamped \\\n"
+                "    \"{header: {frame_id: map}, pose: {position: {x: 3, y: 8, z: 2}, orientation: "
+                "{w: 1}}}\" --once");
             return [&common, options] { return pub(common, *options); };
           }};
 }

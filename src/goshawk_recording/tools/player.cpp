@@ -10,8 +10,8 @@
 namespace goshawk::recording {
 namespace {
 
-constexpr double kSlice_s = 0.05;    // how often a wait looks for Ctrl-C
-constexpr double kSettled_s = 0.7;   // nobody new for this long: all readers are found
+constexpr double kSlice_s = 0.05;   // how often a wait looks for Ctrl-C
+constexpr double kSettled_s = 0.7;  // nobody new for this long: all readers are found
 constexpr double kClockPeriod_s = 0.01;
 constexpr double kWord_s = 3.0;  // waiting silently for longer would puzzle
 // A recorder takes topic by topic what has come: within this time it may be in another order.
@@ -41,16 +41,23 @@ Player::Player(runtime::Node& node, Reader& reader, const std::set<std::uint16_t
     // How many its writer kept is not recorded: the newest map is all that counts of maps.
     if (qos.transient_local && is_large(type)) qos.depth = 1;
     const auto known = introspection::find_type(type);
-    tracks_[id] = {node.advertise_raw(options_.prefix + channel.topic,
-                                      runtime::raw_message_type(runtime::wire_type_name(type)), qos),
-                   known ? *known : nullptr, qos.transient_local, qos.reliable,
-                   turn_of(options_.prefix + channel.topic, type)};
+    tracks_[id] = {
+        node.advertise_raw(options_.prefix + channel.topic,
+                           runtime::raw_message_type(runtime::wire_type_name(type)), qos),
+        known ? *known : nullptr, qos.transient_local, qos.reliable,
+        turn_of(options_.prefix + channel.topic, type)};
   }
-  if (!options_.lock_step.empty()) turns_.emplace(node);
+  if (!options_.plant.empty()) {
+    options_.plant = options_.prefix + options_.plant;
+    plant_turns_ = node.advertise_raw(options_.plant + kTurnEnd,
+                                      runtime::raw_message_type(runtime::wire_type_name(kTurnType)),
+                                      runtime::Qos::reliable_last());
+  }
+  if (!options_.lock_step.empty() || !options_.plant.empty()) turns_.emplace(node);
   if (options_.clock) {
-    clock_ = node.advertise_raw("/clock",
-                                runtime::raw_message_type("rosgraph_msgs::msg::dds_::Clock_"),
-                                runtime::Qos::best_effort());
+    clock_ =
+        node.advertise_raw("/clock", runtime::raw_message_type("rosgraph_msgs::msg::dds_::Clock_"),
+                           runtime::Qos::best_effort());
     node.every(kClockPeriod_s, [this] { publish_clock(); });
   }
 }
@@ -67,17 +74,21 @@ void Player::wait_for_readers() {
 }
 
 void Player::wait_for_turn_takers() {
+  if (!options_.plant.empty()) wait_for_turn_taker(plant_turns_, options_.plant);
+  for (const auto& [id, track] : tracks_) {
+    if (!track.turn_of.empty()) wait_for_turn_taker(track.publisher, track.turn_of);
+  }
+}
+
+void Player::wait_for_turn_taker(const runtime::RawPublisher& turns, const std::string& node) {
   const auto begin = steady_ns();
   bool said = false;
-  for (const auto& [id, track] : tracks_) {
-    if (track.turn_of.empty()) continue;
-    while (!Interruptible::interrupted() && track.publisher.matched() == 0) {
-      if (!said && double(steady_ns() - begin) * 1e-9 > kWord_s) {
-        say("replay", "waits for " + track.turn_of + " to run with lock_step: true");
-        said = true;
-      }
-      node_.spin_some(kSlice_s);
+  while (!Interruptible::interrupted() && turns.matched() == 0) {
+    if (!said && double(steady_ns() - begin) * 1e-9 > kWord_s) {
+      say("replay", "waits for " + node + " to run with lock_step: true");
+      said = true;
     }
+    node_.spin_some(kSlice_s);
   }
 }
 
@@ -108,6 +119,9 @@ Status Player::play_in_lock_step() {
     return played.ok() && !Interruptible::interrupted();
   });
   if (read && played) played = play_held(std::numeric_limits<std::uint64_t>::max());
+  if (read && played && !options_.plant.empty() && !Interruptible::interrupted()) {
+    played = turns_->give_plant(plant_turns_, nullptr, options_.plant);
+  }
   held_.clear();
   return played ? read : played;
 }
@@ -124,6 +138,10 @@ Status Player::play_held(std::uint64_t until_ns) {
 
 Status Player::play_in_order(Held& held) {
   Track& track = tracks_.at(held.channel);
+  if (!options_.plant.empty() && reader_.channels().at(held.channel).topic == kClock) {
+    if (auto s = turns_->give_plant(plant_turns_, &held.data, options_.plant); !s) return s;
+    call_the_roll(options_.plant);
+  }
   if (track.turn_of.empty()) {
     ++published_;
     if (auto status = track.publisher.publish_raw(&held.data); !status) return status;
@@ -134,11 +152,14 @@ Status Player::play_in_order(Held& held) {
     return success();
   }
   if (auto status = turns_->give(track.publisher, held.data, track.turn_of); !status) return status;
-  // After the roll call everybody finds everybody, as in the flight.
-  if (roll_.insert(track.turn_of).second && roll_.size() == options_.lock_step.size()) {
-    settle(options_.wait_s);
-  }
+  call_the_roll(track.turn_of);
   return success();
+}
+
+// After everybody's first turn they find each other, as in the flight.
+void Player::call_the_roll(const std::string& node) {
+  const std::size_t all = options_.lock_step.size() + (options_.plant.empty() ? 0 : 1);
+  if (roll_.insert(node).second && roll_.size() == all) settle(options_.wait_s);
 }
 
 Status Player::play_in_time() {
@@ -147,13 +168,13 @@ Status Player::play_in_time() {
   begin_ns_ = steady_ns();
   playing_ = true;
   Status published = success();
-  const auto read = reader_.read({.from_ns = from_ns_, .channels = channels_},
-                                 [&](const MessageView& m) {
-    wait_until(begin_ns_ + std::int64_t(double(m.log_time_ns - from_ns_) / options_.rate));
-    if (Interruptible::interrupted()) return false;
-    published = publish(tracks_.at(m.channel_id), m.data, m.log_time_ns);
-    return published.ok();
-  });
+  const auto read =
+      reader_.read({.from_ns = from_ns_, .channels = channels_}, [&](const MessageView& m) {
+        wait_until(begin_ns_ + std::int64_t(double(m.log_time_ns - from_ns_) / options_.rate));
+        if (Interruptible::interrupted()) return false;
+        published = publish(tracks_.at(m.channel_id), m.data, m.log_time_ns);
+        return published.ok();
+      });
   playing_ = false;
   return published ? read : published;
 }
@@ -167,11 +188,11 @@ Status Player::publish_latched_before(std::uint64_t from_ns) {
   }
   if (latched.empty()) return success();
   Status published = success();
-  const auto read = reader_.read({.to_ns = from_ns - 1, .channels = latched},
-                                 [&](const MessageView& m) {
-    published = publish(tracks_.at(m.channel_id), m.data, m.log_time_ns);
-    return published.ok() && !Interruptible::interrupted();
-  });
+  const auto read =
+      reader_.read({.to_ns = from_ns - 1, .channels = latched}, [&](const MessageView& m) {
+        published = publish(tracks_.at(m.channel_id), m.data, m.log_time_ns);
+        return published.ok() && !Interruptible::interrupted();
+      });
   return published ? read : published;
 }
 

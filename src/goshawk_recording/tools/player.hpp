@@ -5,21 +5,22 @@
 #include <string>
 #include <vector>
 
+#include "goshawk/introspection/schema.hpp"
 #include "goshawk/recording/reader.hpp"
 #include "goshawk/runtime/node.hpp"
-#include "goshawk/introspection/schema.hpp"
 #include "turns.hpp"
 
 namespace goshawk::recording {
 
 struct PlayerOptions {
   double rate = 1.0;
-  double start_offset_s = 0.0;  // from the first message of the recording
-  double wait_s = 3.0;          // longest wait for readers to be found
-  bool clock = false;           // publish /clock
-  bool restamp = false;         // move stamps to now
-  std::string prefix;           // before every topic
+  double start_offset_s = 0.0;           // from the first message of the recording
+  double wait_s = 3.0;                   // longest wait for readers to be found
+  bool clock = false;                    // publish /clock
+  bool restamp = false;                  // move stamps to now
+  std::string prefix;                    // before every topic
   std::set<std::string> lock_step = {};  // full names of nodes that are given their recorded turns
+  std::string plant = {};                // full name of the node that led, where it is to follow
 };
 
 /// Publishes recorded messages as they were, at the times they came; in lock step, in the order in
@@ -55,7 +56,9 @@ class Player {
   };
   int matched() const;
   void wait_for_turn_takers();
+  void wait_for_turn_taker(const runtime::RawPublisher& turns, const std::string& node);
   void settle(double longest_s);
+  void call_the_roll(const std::string& node);
   Status play_in_time();
   Status play_in_lock_step();
   Status play_held(std::uint64_t until_ns);
@@ -71,13 +74,14 @@ class Player {
   std::map<std::uint16_t, Track> tracks_;  // by channel
   std::set<std::uint16_t> channels_;
   runtime::RawPublisher clock_;
-  std::optional<TurnGiver> turns_;                // in lock step
-  std::multimap<std::uint64_t, Held> held_;       // by the time of publication
-  std::set<std::string> roll_;                    // nodes that had a turn
+  std::optional<TurnGiver> turns_;           // in lock step
+  std::multimap<std::uint64_t, Held> held_;  // by the time of publication
+  std::set<std::string> roll_;               // nodes that had a turn
+  runtime::RawPublisher plant_turns_;
   Bytes message_;
   std::uint64_t published_ = 0;
-  std::uint64_t from_ns_ = 0;     // log time that is played at ...
-  std::int64_t begin_ns_ = 0;     // ... this steady time
+  std::uint64_t from_ns_ = 0;  // log time that is played at ...
+  std::int64_t begin_ns_ = 0;  // ... this steady time
   bool playing_ = false;
 };
 

@@ -20,13 +20,12 @@ std::string endless(const std::string& name) {
 std::string to_profiles(const std::vector<runtime::EndpointInfo>& writers) {
   std::ostringstream yaml;
   for (const auto& writer : writers) {
-    yaml << "- history: " << kHistoryUnknown << "\n  depth: 0\n  reliability: "
-         << (writer.reliable ? kReliable : kBestEffort)
+    yaml << "- history: " << kHistoryUnknown
+         << "\n  depth: 0\n  reliability: " << (writer.reliable ? kReliable : kBestEffort)
          << "\n  durability: " << (writer.transient_local ? kTransientLocal : kVolatile) << "\n"
-         << endless("deadline") << endless("lifespan")
-         << "  liveliness: " << kLivelinessAutomatic << "\n"
-         << endless("liveliness_lease_duration")
-         << "  avoid_ros_namespace_conventions: false\n";
+         << endless("deadline") << endless("lifespan") << "  liveliness: " << kLivelinessAutomatic
+         << "\n"
+         << endless("liveliness_lease_duration") << "  avoid_ros_namespace_conventions: false\n";
   }
   return yaml.str();
 }

@@ -65,7 +65,11 @@ void add_options(CLI::App& app, RecordCall& o) {
   app.add_flag("--json", o.json, "print one JSON object at the end (docs/cli.md)");
   app.footer(
       "Records until Ctrl-C. What is recorded is in the file within a second, and stays readable\n"
-      "whatever happens to this process. Foxglove and ROS 2's tools open the file.");
+      "whatever happens to this process. Foxglove and ROS 2's tools open the file.\n\n"
+      "Examples:\n"
+      "  goshawk record\n"
+      "  goshawk record /odom /uav1/* -o odom.mcap --duration 60\n"
+      "  goshawk record -x /map/voxels");
 }
 
 Status complete_names(std::vector<std::string>& names) {

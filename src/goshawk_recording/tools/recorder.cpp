@@ -65,8 +65,8 @@ std::uint16_t Recorder::schema(const std::string& type) {
     say_once("no definition of " + type +
              " is known here: its messages are recorded, but others cannot look into them");
   }
-  return schemas_[type] = writer_.add_schema(type, definition ? "ros2msg" : "",
-                                             definition ? *definition : "");
+  return schemas_[type] =
+             writer_.add_schema(type, definition ? "ros2msg" : "", definition ? *definition : "");
 }
 
 void Recorder::join(const std::string& topic, const Endpoints& writers) {

@@ -55,10 +55,10 @@ class Recorder {
   Writer writer_;
   RecorderOptions options_;
   Status state_ = success();
-  std::map<std::string, Track> tracks_;             // by topic
-  std::map<std::string, std::uint16_t> schemas_;    // by type
-  std::map<std::string, std::uint64_t> received_;   // by topic
-  std::vector<std::uint32_t> sequences_;            // by channel
+  std::map<std::string, Track> tracks_;            // by topic
+  std::map<std::string, std::uint16_t> schemas_;   // by type
+  std::map<std::string, std::uint64_t> received_;  // by topic
+  std::vector<std::uint32_t> sequences_;           // by channel
   std::set<std::string> said_;
 };
 

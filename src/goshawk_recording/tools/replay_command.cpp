@@ -40,6 +40,9 @@ void add_options(CLI::App& app, Options& o) {
                  "nodes that run with lock_step: true: they are given the recorded turns, so that "
                  "each takes the same messages at the same time as in the recording")
       ->expected(1, -1);
+  app.add_option(
+      "--plant", o.player.plant,
+      "the node that led the recording, where it is to be given turns as well, by /clock");
   app.add_option("--prefix", o.player.prefix, "before every topic, as in /replay");
   app.add_option("--wait", o.player.wait_s, "[s] longest wait for readers before the start")
       ->capture_default_str()
@@ -103,7 +106,8 @@ int list(const Reader& reader, const Options& o) {
 /// Whether a channel is played: in lock step with the turns of the nodes that were named, and not
 /// with those of others.
 bool wanted(const Options& o, const std::string& topic, const std::string& type) {
-  if (!o.player.lock_step.empty() && type == kTurnType) {
+  if (!o.player.plant.empty() && topic == kClock) return true;
+  if ((!o.player.lock_step.empty() || !o.player.plant.empty()) && type == kTurnType) {
     return o.player.lock_step.contains(turn_of(topic, type));
   }
   return o.topics.empty() || matches(o.topics, topic);
@@ -116,6 +120,10 @@ Status check_turns(const Reader& reader, const Options& o) {
   for (const auto& [id, channel] : reader.channels()) {
     const std::string node = turn_of(channel.topic, type_of(reader, channel));
     if (!node.empty() && recorded.insert(node).second) list += (list.empty() ? "" : ", ") + node;
+  }
+  if (!o.player.plant.empty() && recorded.empty()) {
+    return fail(ErrorCode::invalid_parameter,
+                "--plant " + o.player.plant + ": " + o.file + " was not recorded in lock step");
   }
   for (const auto& node : o.player.lock_step) {
     if (recorded.contains(node)) continue;
@@ -137,15 +145,15 @@ Result<std::set<std::uint16_t>> choose(const Reader& reader, const Options& o) {
     if (!wanted(o, channel.topic, type_of(reader, channel))) continue;
     if (channel.message_encoding != "cdr" || type_of(reader, channel)[0] == '\0' ||
         !runtime::check_topic_name(channel.topic)) {
-      say("replay", channel.topic + " is left out: it is no topic of ROS 2, whose messages are CDR");
+      say("replay",
+          channel.topic + " is left out: it is no topic of ROS 2, whose messages are CDR");
       continue;
     }
     chosen.insert(id);
   }
   if (chosen.empty()) {
-    return fail(ErrorCode::invalid_input,
-                "nothing of " + o.file + " is to be played: it has " +
-                    (here.empty() ? "no topics" : here));
+    return fail(ErrorCode::invalid_input, "nothing of " + o.file + " is to be played: it has " +
+                                              (here.empty() ? "no topics" : here));
   }
   return chosen;
 }
@@ -202,11 +210,12 @@ int replay(const Options& o) {
   if (o.player.start_offset_s > duration_s(*reader)) {
     char text[32];
     std::snprintf(text, sizeof text, "%.3f", duration_s(*reader));
-    return report_failure("replay",
-                          fail(ErrorCode::invalid_parameter,
-                               std::string("--start-offset lies behind the end: the recording is ") +
-                                   text + " s long"),
-                          o.json, kWrongCall);
+    return report_failure(
+        "replay",
+        fail(ErrorCode::invalid_parameter,
+             std::string("--start-offset lies behind the end: the recording is ") + text +
+                 " s long"),
+        o.json, kWrongCall);
   }
   try {
     return play(*reader, *channels, o);
@@ -220,6 +229,11 @@ int replay(const Options& o) {
 int replay_command(const std::vector<std::string>& arguments) {
   CLI::App app("Play a recording over DDS: same topics, types, bytes and quality of service.",
                "goshawk replay");
+  app.footer(
+      "Examples:\n"
+      "  goshawk replay flight.mcap --list\n"
+      "  goshawk replay flight.mcap --rate 0.5 --loop --clock\n"
+      "  goshawk replay flight.mcap --topics /plan_request /map/* --restamp");
   Options o;
   add_options(app, o);
   if (const auto status = parse(app, arguments)) return *status;
@@ -232,6 +246,11 @@ int replay_command(const std::vector<std::string>& arguments) {
     auto full = full_topic_name(node);
     if (!full) return report_failure("replay", full.error(), o.json, kWrongCall);
     o.player.lock_step.insert(*full);
+  }
+  if (!o.player.plant.empty()) {
+    auto full = full_topic_name(o.player.plant);
+    if (!full) return report_failure("replay", full.error(), o.json, kWrongCall);
+    o.player.plant = *full;
   }
   if (!o.player.prefix.empty()) {
     auto full = full_topic_name(o.player.prefix);

@@ -45,14 +45,12 @@ class Shifter {
     std::uint32_t count = field.size;
     if (field.arity == Arity::sequence && !read(count)) return false;
     if (field.kind == Kind::structure || field.kind == Kind::string) {
-      const auto least = field.kind == Kind::string
-                             ? 4U
-                             : all_types()[std::size_t(field.type)].least_size;
+      const auto least =
+          field.kind == Kind::string ? 4U : all_types()[std::size_t(field.type)].least_size;
       if (count > (payload_.size() - at_) / least) return false;
       for (std::uint32_t i = 0; i < count; ++i) {
-        const bool good = field.kind == Kind::string
-                              ? skip_string()
-                              : walk(all_types()[std::size_t(field.type)]);
+        const bool good =
+            field.kind == Kind::string ? skip_string() : walk(all_types()[std::size_t(field.type)]);
         if (!good) return false;
       }
       return true;
@@ -114,8 +112,8 @@ Status shift_stamps(const Type& type, Bytes& message, std::int64_t shift_ns) {
     Shifter shifter(std::span<unsigned char>(message).subspan(kEncapsulation), swap, shift_ns);
     if (shifter.walk_to_last_stamp(type)) return success();
   }
-  return fail(ErrorCode::invalid_input,
-              "a recorded message is no " + std::string(type.name) + ": its stamps cannot be moved");
+  return fail(ErrorCode::invalid_input, "a recorded message is no " + std::string(type.name) +
+                                            ": its stamps cannot be moved");
 }
 
 }  // namespace goshawk::recording

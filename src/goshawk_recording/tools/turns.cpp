@@ -2,7 +2,9 @@
 
 #include <chrono>
 
+#include "goshawk/conversions/geometry.hpp"
 #include "goshawk_msgs.h"
+#include "rosgraph_msgs.h"
 #include "verb.hpp"
 
 namespace goshawk::recording {
@@ -11,7 +13,6 @@ namespace {
 using goshawk_msgs::msg::Turn;
 using Clock = std::chrono::steady_clock;
 
-constexpr const char* kTurnEnd = "/turn";
 constexpr double kAskAgain_s = 0.5;  // a node that is asked twice does its turn once
 constexpr int kAsksUntilWord = 10;
 
@@ -28,6 +29,21 @@ TurnGiver::TurnGiver(runtime::Node& node) : node_(node) {
                          who_ = m.node();
                          number_ = m.number();
                        });
+}
+
+Status TurnGiver::give_plant(const runtime::RawPublisher& turns, const Bytes* clock,
+                             const std::string& plant) {
+  rosgraph_msgs::msg::Clock next;
+  if (clock != nullptr && !runtime::decode(*clock, next)) {
+    return fail(ErrorCode::invalid_input, "a recorded message on /clock is no Clock");
+  }
+  Turn turn;
+  // Before the first step the plant's time stands where simulated time begins.
+  turn.clock(conversions::to_stamp(step_ns_ > 0 ? step_ns_ : runtime::kFirst_ns));
+  turn.number(++plant_turn_);
+  auto bytes = runtime::encode(turn);
+  if (clock != nullptr) step_ns_ = conversions::to_ns(next.clock());
+  return give(turns, bytes, plant);
 }
 
 Status TurnGiver::give(const runtime::RawPublisher& turns, Bytes& turn,

@@ -9,6 +9,8 @@
 namespace goshawk::recording {
 
 inline constexpr const char* kTurnType = "goshawk_msgs/msg/Turn";
+inline constexpr const char* kTurnEnd = "/turn";
+inline constexpr const char* kClock = "/clock";
 
 /// The node whose turns a topic carries ("/tracker" of "/tracker/turn"), or "" for other topics.
 std::string turn_of(const std::string& topic, const std::string& type);
@@ -19,13 +21,21 @@ class TurnGiver {
  public:
   explicit TurnGiver(runtime::Node& node);
 
+  /// A turn of a node that led the recorded flight, and had none: what came in a step of /clock is
+  /// done at the end of that step.
+  /// @param clock bytes of the Clock that begins the next step; nullptr: the last one has ended
+  Status give_plant(const runtime::RawPublisher& turns, const Bytes* clock,
+                    const std::string& plant);
+
   /// @param turn bytes of a Turn. @param follower full name of its node
   /// @return invalid_input where the bytes are no turn; success too where Ctrl-C came first
   Status give(const runtime::RawPublisher& turns, Bytes& turn, const std::string& follower);
 
  private:
   runtime::Node& node_;
-  std::string who_;  // answered last, ...
+  std::int64_t step_ns_ = 0;  // [ns] time of the step that is played, once there is one
+  std::uint64_t plant_turn_ = 0;
+  std::string who_;           // answered last, ...
   std::uint64_t number_ = 0;  // ... and which turn
 };
 

@@ -14,6 +14,7 @@
 
 #include "any_type.hpp"
 #include "context_impl.hpp"
+#include "goshawk/runtime/version.hpp"
 
 namespace goshawk::runtime {
 namespace {
@@ -90,7 +91,7 @@ dds::DomainParticipantQos participant_qos(const ContextOptions& options) {
   discovery.leaseDuration_announcementperiod = {0, 500'000'000};
   discovery.initial_announcements.count = 5;
   discovery.initial_announcements.period = {0, 50'000'000};
-  std::string user_data = "enclave=/;nodes=";
+  std::string user_data = "enclave=/;goshawk=" + version() + ";nodes=";
   for (const auto& name : options.node_names) user_data += name + ",";
   qos.user_data().data_vec().assign(user_data.begin(), user_data.end());
   qos.name("goshawk_" + std::to_string(getpid()));

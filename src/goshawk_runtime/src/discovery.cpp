@@ -25,6 +25,14 @@ std::vector<std::string> nodes_in(const std::string& user_data) {
   return nodes;
 }
 
+std::string version_in(const std::string& user_data) {
+  const std::string key = "goshawk=";
+  const auto at = user_data.find(key);
+  if (at == std::string::npos) return "";
+  const auto from = at + key.size();
+  return user_data.substr(from, user_data.find(';', from) - from);
+}
+
 template <typename Info>
 EndpointInfo endpoint(const Info& info, bool writer) {
   const std::string topic = text(info.topicName());
@@ -51,7 +59,8 @@ void DiscoveryListener::on_participant_discovery(dds::DomainParticipant*,
     return;
   }
   const std::string user_data(info.info.m_userData.begin(), info.info.m_userData.end());
-  participants_[key] = {key, info.info.m_participantName.to_string(), nodes_in(user_data)};
+  participants_[key] = {key, info.info.m_participantName.to_string(), nodes_in(user_data),
+                        version_in(user_data)};
 }
 
 void DiscoveryListener::on_publisher_discovery(dds::DomainParticipant* self,

@@ -302,6 +302,7 @@ def answers_of(stage, reports):
     return [r for r in reports if r["stage"] == stage and r["request_id"] != 0]
 
 
+PLANT = "simulator"
 OUTPUTS = {
     "map_server": ["map/voxels", "map/voxels/updates", "octomap_binary"],
     "path_search": ["path"],
@@ -310,12 +311,20 @@ OUTPUTS = {
     "navigator": ["plan_request", "committed_trajectory", "navigator_state", "navigator_alive",
                   "path_line", "markers"],
     "tracker": ["command", "tracking_state"],
+    "flight_check": [],  # reports only
+    PLANT: ["odom", "odom_true", "vehicle_status", "/tf"],
 }
+REPORTING = [stage for stage in OUTPUTS if stage not in ("navigator", PLANT)]
 MEASURED = ("path", "corridor", "trajectory")  # hold compute_ns, the time that an answer took
-ALL_INPUTS = ["goal_pose", "odom", "cloud_in", "map/*", "plan_request", "path", "corridor",
+ALL_INPUTS = ["goal_pose", "odom", "odom_true", "command", "octomap_binary", "cloud_in", "map/*", "plan_request", "path", "corridor",
               "trajectory", "stage_report", "committed_trajectory", "navigator_alive"]
 RECORDER = "goshawk_record"
 FLIGHT_S = 7.5  # of simulated time
+WEATHER = {"gust_deviation_m_s": 0.5, "position_noise_m": 0.002, "odometry_delay_s": 0.008}
+
+
+def again_topic(topic):
+    return "again/" + topic.lstrip("/")
 
 
 def without(value, name):
@@ -341,11 +350,12 @@ class LockStepReplay(RecordingCase):
         self.assertEqual(self.sandbox.goshawk("world", world, "--json").status, 0)
         file, recorder = self.record("flight.mcap", "--lock-step")
         pilot = self.sandbox.start(harness.PREFIX / "bin" / "goshawk_lock_step_pilot", FLIGHT_S)
-        stages = [{"component": s, "params": {"lock_step": True}} for s in OUTPUTS]
+        followers = [s for s in OUTPUTS if s != PLANT]
+        stages = [{"component": s, "params": {"lock_step": True}} for s in followers]
         stages[0]["params"]["map_file"] = str(world)
-        followers = ["pilot", *OUTPUTS, RECORDER]
-        stages.append({"component": "simulator",
-                       "params": {"lock_step_nodes": ",".join(followers), "speed": 0.0}})
+        turns = ",".join(["pilot", *followers, RECORDER])
+        stages.append({"component": PLANT,
+                       "params": {**WEATHER, "lock_step_nodes": turns, "speed": 0.0}})
         launch = self.launch("flight", stages)
         self.assertEqual(pilot.wait(60), 0, launch.tails())
         launch.process.stop()
@@ -356,15 +366,17 @@ class LockStepReplay(RecordingCase):
         """@return the recording of what all stages answer to it, under /again"""
         again, recorder = self.record("again.mcap", "again/*", "--lock-step")
         stages = [{"component": stage, "params": {"lock_step": True},
-                   "remap": {topic: f"again/{topic}" for topic in outputs}}
+                   "remap": {topic: again_topic(topic) for topic in outputs}}
                   for stage, outputs in OUTPUTS.items()]
         stages[0]["params"]["map_file"] = str(self.sandbox.folder / "world.bt")
+        stages[-1]["params"].update(WEATHER)
         for stage in stages:
             if stage["component"] != "navigator":  # which reads what the others report
                 stage["remap"]["stage_report"] = "again/stage_report"
         launch = self.launch("again", stages)
         played = self.sandbox.goshawk("replay", file, "--topics", *ALL_INPUTS, "--json",
-                                      "--lock-step", *OUTPUTS, RECORDER)
+                                      "--lock-step", *(s for s in OUTPUTS if s != PLANT),
+                                      RECORDER, "--plant", PLANT)
         self.assertEqual(played.status, 0, f"{played}\n{launch.tails()}")
         launch.process.stop()
         self.assertEqual(recorder.stop()[0], 0, str(recorder.outcome()))
@@ -381,9 +393,23 @@ class LockStepReplay(RecordingCase):
             for topic in topics:
                 with self.subTest(stage=stage, topic=topic):
                     self.compare(file, again, topic)
+        self.compare_reports(file, again)
+
+    def compare_reports(self, file, again):
+        then, now = ([m["value"] for m in self.messages(f, t)]
+                     for f, t in ((file, "stage_report"), (again, "again/stage_report")))
+        for stage in REPORTING:
+            with self.subTest(stage=stage, topic="stage_report"):
+                old, new = ([(r["header"]["stamp"], r["request_id"], r["code"], r["message"])
+                             for r in reports if r["stage"] == stage] for reports in (then, now))
+                harness.note(f"{stage}: {len(old)} reports, again {len(new)}")
+                self.assertGreater(len(new), 0)
+                self.assertLessEqual(abs(len(new) - len(old)), 1)
+                for pair in zip(new, old):
+                    self.assertEqual(*pair)
 
     def compare(self, file, again, topic):
-        then, now = self.messages(file, topic), self.messages(again, f"again/{topic}")
+        then, now = self.messages(file, topic), self.messages(again, again_topic(topic))
         harness.note(f"{topic}: {len(then)} messages, again {len(now)}")
         # The world stands still wherever in a step the pilot left it.
         self.assertLessEqual(abs(len(now) - len(then)), 2)

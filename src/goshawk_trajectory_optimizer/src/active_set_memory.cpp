@@ -2,14 +2,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace goshawk::trajectory_optimizer {
 namespace {
 
-constexpr int kMostActive = 512;  // more than that is no work for this method
+constexpr int kMostActive = 72;  // what more of them cost, the interior point does not
 
 Lanes four_of(const Vec3& v) {
   return Lanes{v[0], v[1], v[2], 0.0};
+}
+
+// The control points of a piece have the faces of one polytope.
+bool same_faces(const SplineProblem& problem, const FacePoint& a, const FacePoint& b) {
+  const int count = a.end - a.begin;
+  const Face* faces = problem.faces.data();
+  return b.end - b.begin == count &&
+         std::memcmp(faces + a.begin, faces + b.begin, std::size_t(count) * sizeof(Face)) == 0;
 }
 
 double* doubles_of(Lanes& first) {
@@ -72,34 +81,48 @@ void ActiveSetSolver::Memory::load_joints(const SplineProblem& problem) {
 void ActiveSetSolver::Memory::load_faces(const SplineProblem& problem) {
   points_.clear();
   faces_.clear();
-  double probe = 0.0;  // not zero where anything is not finite
+  const FacePoint* packed = nullptr;  // whose faces were packed last
   for (const FacePoint& point : problem.face_points) {
-    const bool constant = point.joint <= 0 || point.joint >= state.last;
-    PricedPoint to{point.joint, int(faces_.size()), 0, {}, 0.0};
-    for (int i = 0; i < 3; ++i) to.map[i] = point.map[i];
-    for (int i = point.begin; i < point.end; ++i) {
-      const Face& face = problem.faces[std::size_t(i)];
-      probe += 0.0 * (face.normal[0] + face.normal[1] + face.normal[2] + face.offset);
-      if (constant) {
-        const Vec3 y = problem.joints[std::size_t(point.joint)] * point.map;
-        constant_violated = constant_violated || face.normal.dot(y) > face.offset;
-        continue;
-      }
-      const int lane = (i - point.begin) % 4;
-      if (lane == 0) faces_.push_back({Lanes{}, Lanes{}, Lanes{}, Lanes{1.0, 1.0, 1.0, 1.0}});
-      FourFaces& four = faces_.back();
-      four.nx[lane] = face.normal[0];
-      four.ny[lane] = face.normal[1];
-      four.nz[lane] = face.normal[2];
-      four.offset[lane] = face.offset;
+    if (point.joint <= 0 || point.joint >= state.last) {
+      check_constant(problem, point);
+      continue;
     }
-    to.end = int(faces_.size());
-    if (!constant) points_.push_back(to);
+    if (packed == nullptr || !same_faces(problem, *packed, point)) {
+      first_packed_ = int(faces_.size());
+      pack_faces(problem, point);
+      packed = &point;
+    }
+    PricedPoint& to = points_.emplace_back();
+    to = {point.joint, first_packed_, int(faces_.size()), {}, 0.0};
+    for (int i = 0; i < 3; ++i) to.map[i] = point.map[i];
   }
-  finite = finite && probe == 0.0;
   state.points = points_.data();
   state.point_count = int(points_.size());
   state.faces = faces_.data();
+}
+
+void ActiveSetSolver::Memory::pack_faces(const SplineProblem& problem, const FacePoint& point) {
+  double probe = 0.0;  // not zero where anything is not finite
+  for (int i = point.begin; i < point.end; ++i) {
+    const Face& face = problem.faces[std::size_t(i)];
+    probe += 0.0 * (face.normal[0] + face.normal[1] + face.normal[2] + face.offset);
+    const int lane = (i - point.begin) % 4;
+    if (lane == 0) faces_.push_back({Lanes{}, Lanes{}, Lanes{}, Lanes{1.0, 1.0, 1.0, 1.0}});
+    FourFaces& four = faces_.back();
+    four.nx[lane] = face.normal[0];
+    four.ny[lane] = face.normal[1];
+    four.nz[lane] = face.normal[2];
+    four.offset[lane] = face.offset;
+  }
+  finite = finite && probe == 0.0;
+}
+
+void ActiveSetSolver::Memory::check_constant(const SplineProblem& problem, const FacePoint& point) {
+  const Vec3 y = problem.joints[std::size_t(point.joint)] * point.map;
+  for (int i = point.begin; i < point.end; ++i) {
+    const Face& face = problem.faces[std::size_t(i)];
+    if (!(face.normal.dot(y) <= face.offset)) constant_violated = true;
+  }
 }
 
 void ActiveSetSolver::Memory::load_limits(const SplineProblem& problem) {

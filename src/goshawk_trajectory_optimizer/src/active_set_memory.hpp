@@ -21,6 +21,8 @@ struct ActiveSetSolver::Memory {
  private:
   void load_joints(const SplineProblem& problem);
   void load_faces(const SplineProblem& problem);
+  void pack_faces(const SplineProblem& problem, const FacePoint& point);
+  void check_constant(const SplineProblem& problem, const FacePoint& point);
   void load_limits(const SplineProblem& problem);
   void load_limit(const SplineProblem& problem, int k, int derivative, PricedLimits& to);
   bool check_constant(const PointMap& map, int k, double limit, const PricedSet& set);
@@ -36,7 +38,8 @@ struct ActiveSetSolver::Memory {
   std::vector<Jerk> jerk_;
   std::vector<JointFactor> factors_;
   std::vector<PricedPoint> points_;
-  std::vector<FourFaces> faces_;
+  std::vector<FourFaces> faces_;  // points with the same faces share them
+  int first_packed_ = 0;
   std::vector<PricedLimits> limits_[kDerivatives];
   std::vector<HalfSpace> active_;
 };

@@ -32,21 +32,31 @@ GOSHAWK_INLINE Lanes root(Lanes q) {
                __builtin_sqrt(q[3])};
 }
 
+GOSHAWK_INLINE Lanes violation_of(const FourFaces& f, Lanes y0, Lanes y1, Lanes y2) {
+  return f.nx * y0 + f.ny * y1 + f.nz * y2 - f.offset;
+}
+
+GOSHAWK_INLINE Lanes face_point(const ActiveSetState& s, const PricedPoint& point) {
+  const Lanes* v = s.x + 3 * point.joint;
+  return point.map[0] * v[0] + point.map[1] * v[1] + point.map[2] * v[2];
+}
+
+// Which point; which of its faces is found for the winner only, so that no search waits for
+// another.
 Worst price_faces(ActiveSetState& s) {
   Worst worst;
   const Lanes tolerance = all(s.face_tolerance);
   Lanes outside = all(-1e300);
   for (int p = 0; p < s.point_count; ++p) {
     const PricedPoint& point = s.points[p];
-    const Lanes* v = s.x + 3 * point.joint;
-    const Lanes y = point.map[0] * v[0] + point.map[1] * v[1] + point.map[2] * v[2];
-    const Lanes y0 = all(y[0]), y1 = all(y[1]), y2 = all(y[2]), weight = all(point.weight);
+    const Lanes y = face_point(s, point);
+    const Lanes y0 = all(y[0]), y1 = all(y[1]), y2 = all(y[2]);
+    Lanes violation = all(-1e300);
     for (int i = point.begin; i < point.end; ++i) {
-      const FourFaces& f = s.faces[i];
-      const Lanes violation = f.nx * y0 + f.ny * y1 + f.nz * y2 - f.offset;
-      outside = larger(outside, violation);
-      consider(worst, violation > tolerance ? violation * weight : Lanes{}, i);
+      violation = larger(violation_of(s.faces[i], y0, y1, y2), violation);
     }
+    outside = larger(outside, violation);
+    consider(worst, violation > tolerance ? violation * point.weight : Lanes{}, p);
   }
   s.face_violation = largest(outside);
   return worst;
@@ -60,9 +70,14 @@ GOSHAWK_INLINE void limit_points(const PricedLimits& l, const Lanes* x, Lanes* y
   }
 }
 
-// Index of a norm of the points of a piece: derivative, piece, norm.
-GOSHAWK_INLINE long long limit_index(int derivative, int piece, int norm) {
-  return ((long long)(piece)*kDerivatives + derivative) * kMostNorms + norm;
+// The largest of a control point's norms, squared, one point a lane.
+GOSHAWK_INLINE Lanes largest_square(const PricedSet& set, const Lanes* y) {
+  Lanes largest = {};
+  for (int r = 0; r < set.norms; ++r) {
+    const double* w = set.weights[r];
+    largest = larger(largest, w[0] * y[0] * y[0] + w[1] * y[1] * y[1] + w[2] * y[2] * y[2]);
+  }
+  return largest;
 }
 
 Worst price_limits(ActiveSetState& s) {
@@ -75,14 +90,13 @@ Worst price_limits(ActiveSetState& s) {
       if (set.pieces == nullptr) continue;
       Lanes y[3];
       limit_points(set.pieces[k], s.x + 3 * k, y);
-      for (int r = 0; r < set.norms; ++r) {
-        const double* w = set.weights[r];
-        const Lanes q = w[0] * y[0] * y[0] + w[1] * y[1] * y[1] + w[2] * y[2] * y[2];
-        outside = larger(outside, q - one);
-        const Lanes violation = root(q) - one;
-        consider(worst, q - one > tolerance ? violation * set.pieces[k].weight : Lanes{},
-                 limit_index(d, k, r));
-      }
+      const Lanes square = largest_square(set, y);
+      const Lanes over = square - one;
+      outside = larger(outside, over);
+      if (!(largest(over) > s.limit_tolerance)) continue;
+      const Lanes violation = root(square) - one;
+      consider(worst, over > tolerance ? violation * set.pieces[k].weight : Lanes{},
+               (long long)(k)*kDerivatives + d);
     }
   }
   s.limit_violation = largest(outside);
@@ -90,16 +104,23 @@ Worst price_limits(ActiveSetState& s) {
 }
 
 void take_face(ActiveSetState& s, long long index, int lane) {
-  const FourFaces& f = s.faces[index];
-  const PricedPoint* point = s.points;
-  while (point->end <= index) ++point;
+  const PricedPoint& point = s.points[index];
+  const Lanes y = face_point(s, point);
+  int most = point.begin;
+  double violation = -1e300;
+  for (int i = point.begin; i < point.end; ++i) {
+    const double here = violation_of(s.faces[i], all(y[0]), all(y[1]), all(y[2]))[lane];
+    if (here > violation) most = i;
+    violation = larger(here, violation);
+  }
+  const FourFaces& f = s.faces[most];
   HalfSpace& to = s.next;
   to.normal = Lanes{f.nx[lane], f.ny[lane], f.nz[lane], 0.0};
   to.bound = f.offset[lane];
   to.limit = -1;
-  to.joint = point->joint;
+  to.joint = point.joint;
   for (int b = 0; b < 3; ++b) {
-    to.map[b] = point->map[b];
+    to.map[b] = point.map[b];
     to.map[b + 3] = 0.0;
   }
 }
@@ -107,21 +128,28 @@ void take_face(ActiveSetState& s, long long index, int lane) {
 // The half-space that touches the limit in the direction of the point. Where the norm is of one
 // component, that is the limit itself.
 void take_limit(ActiveSetState& s, long long index, int lane) {
-  const int norm = int(index % kMostNorms);
-  const int derivative = int(index / kMostNorms % kDerivatives);
-  const int piece = int(index / kMostNorms / kDerivatives);
+  const int derivative = int(index % kDerivatives);
+  const int piece = int(index / kDerivatives);
   const PricedSet& set = s.limits[derivative];
   const PricedLimits& l = set.pieces[piece];
   HalfSpace& to = s.next;
   to.joint = piece;
   for (int b = 0; b < 6; ++b) to.map[b] = l.map[b][lane];
   const Lanes y = point_at(s.x, piece, to.map);
+  int norm = 0;
+  double square = 0.0;
+  for (int r = 0; r < set.norms; ++r) {
+    const double* w = set.weights[r];
+    const double here = w[0] * y[0] * y[0] + w[1] * y[1] * y[1] + w[2] * y[2] * y[2];
+    if (here > square) norm = r;
+    square = larger(here, square);
+  }
   const double* w = set.weights[norm];
   const Lanes direction = {w[0] * y[0], w[1] * y[1], w[2] * y[2], 0.0};
-  to.normal = direction / all(__builtin_sqrt(sum(direction * y)));
+  to.normal = direction / all(__builtin_sqrt(square));
   to.bound = 1.0;
   const int components = (w[0] > 0.0) + (w[1] > 0.0) + (w[2] > 0.0);
-  to.limit = components > 1 ? 4 * index + lane : -1;
+  to.limit = components > 1 ? (4 * index + lane) * kMostNorms + norm : -1;
 }
 
 void price(ActiveSetState& s) {
@@ -137,5 +165,7 @@ void price(ActiveSetState& s) {
     take_limit(s, limit, limit_lane);
   }
   s.next.multiplier = 0.0;
-  s.violation = sum(s.next.normal * point_at(s.x, s.next.joint, s.next.map)) - s.next.bound;
+  // Summed in another order than it was found: it stays a violation.
+  const Lanes y = point_at(s.x, s.next.joint, s.next.map);
+  s.violation = larger(sum(s.next.normal * y) - s.next.bound, 1e-300);
 }

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kRounding = 1e-9;  // of a duration
 constexpr int kMostSlowings = 8;
-constexpr double kLeastShare = 1e-3;  // of the acceleration limit
+constexpr double kLeastOfLimit = 1e-3;  // of the acceleration limit
 
 void stretch(Plan& plan, double factor) {
   for (double& duration : plan.durations_s) duration *= factor;
@@ -84,7 +84,7 @@ Result<Solution> TrajectoryOptimizer::Method::within_vehicle(const Request& requ
   const double share = safe / (request.limits.norm == LimitNorm::euclidean ? 1.0 : std::sqrt(3.0));
   std::optional<Solution> slowed;
   Plan plan = best_plan_;
-  for (int pass = 0; known && share > kLeastShare && pass < kMostSlowings; ++pass) {
+  for (int pass = 0; known && share > kLeastOfLimit && pass < kMostSlowings; ++pass) {
     plan.a_factors.resize(plan.durations_s.size(), 1.0);
     for (std::size_t k = 0; k < plan.durations_s.size(); ++k) {
       const auto piece =
@@ -100,7 +100,7 @@ Result<Solution> TrajectoryOptimizer::Method::within_vehicle(const Request& requ
     break;
   }
   // Or carefully everywhere, where that is no slower.
-  if (known && share > kLeastShare) {
+  if (known && share > kLeastOfLimit) {
     Limits limits = request.limits;
     limits.a_max_m_s2 *= std::min(1.0, share);
     limits.a_max_vertical_m_s2 *= std::min(1.0, share);

@@ -53,11 +53,15 @@ std::vector<Index3> surface_of(const BitGrid& grid) {
   return surface;
 }
 
+// Slow to fast, as the flight's page has it (page/theme.js).
 Vec3 speed_color(double ratio) {
-  static const Vec3 kStops[] = {{0.27, 0.42, 0.95}, {0.13, 0.78, 0.87}, {0.35, 0.95, 0.45},
-                                {0.95, 0.88, 0.25}, {0.98, 0.52, 0.16}, {0.88, 0.16, 0.12}};
-  const double s = 5.0 * std::clamp(ratio, 0.0, 1.0);
-  const int k = std::min(4, int(s));
+  static const Vec3 kStops[] = {{0.18, 0.42, 1.0},
+                                {0.50, 0.34, 0.96},
+                                {0.82, 0.26, 0.70},
+                                {0.93, 0.28, 0.34},
+                                {1.0, 0.52, 0.10}};
+  const double s = 4.0 * std::clamp(ratio, 0.0, 1.0);
+  const int k = std::min(3, int(s));
   return kStops[k] + (s - k) * (kStops[k + 1] - kStops[k]);
 }
 

@@ -82,7 +82,7 @@ class VisualizerComponent : public Component {
       array.markers().push_back(line_marker("path as searched", conversions::from_msg(path_.raw()),
                                             0.02, {0.79, 0.64, 1.0}, now_ns));
       array.markers().push_back(line_marker("pruned path", conversions::from_msg(path_.waypoints()),
-                                            0.025, {1.0, 0.62, 0.26}, now_ns));
+                                            0.025, {0.95, 0.89, 0.30}, now_ns));
     }
     for (auto& marker : corridor_markers(received->polytopes, now_ns)) {
       array.markers().push_back(std::move(marker));

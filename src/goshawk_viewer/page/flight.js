@@ -18,6 +18,8 @@ Goshawk.FlightPage = class extends Goshawk.Page {
     this.fillPlots();
     this.bindTime();
     this.setTime(this.begin);
+    const some = data.obstacles || data.grown || this.legs.length || this.track.length;
+    this.hint(some || !this.view ? '' : 'There is no map, no plan and no flight in this file.');
   }
 
   framed() {
@@ -61,7 +63,7 @@ Goshawk.FlightPage = class extends Goshawk.Page {
     const duration = this.end - this.begin;
     const flights = this.legs.filter(l => l.trajectory);
     if (flights.length) {
-      facts.push(['trajectory', flights.reduce((s, l) => s + l.trajectory.duration, 0).toFixed(2) + ' s']);
+      facts.push(['planned', flights.reduce((s, l) => s + l.trajectory.duration, 0).toFixed(2) + ' s']);
     }
     if (this.track.length) {
       let length = 0, top = 0;
@@ -121,11 +123,12 @@ Goshawk.FlightPage = class extends Goshawk.Page {
     if (!this.curves) return;
     const {flown, plan} = this.curves, style = this.style();
     const span = [this.begin, Math.max(this.end, this.begin + 1e-3)];
-    const pair = name => [{color: style.plan, points: plan[name], width: 3.2},
-                          {color: style.flown, points: flown[name], width: 1.2}];
+    const pair = name => [{name: 'planned', color: style.plan, points: plan[name], width: 3.2},
+                          {name: 'flown', color: style.flown, points: flown[name], width: 1.2}]
+        .filter(s => s.points.length);
     this.plots[0].set(span, pair('speed'));
     this.plots[1].set(span, pair('acceleration'));
-    this.plots[2].set(span, [{color: style.flown, points: flown.error, width: 1.2}]);
+    this.plots[2].set(span, [{name: 'flown', color: style.flown, points: flown.error, width: 1.2}]);
     this.plotsOld = true;
   }
 
@@ -138,12 +141,7 @@ Goshawk.FlightPage = class extends Goshawk.Page {
     Object.assign($('time'), {min: this.begin, max: Math.max(this.end, this.begin + 1e-3), step: 0.001});
     $('time').addEventListener('input', () => this.setTime(Number($('time').value)));
     $('play').addEventListener('click', () => this.play(!this.playing));
-    window.addEventListener('keydown', event => {
-      if (event.target.tagName === 'INPUT' || event.target.tagName === 'BUTTON') return;
-      if (event.key === ' ') this.play(!this.playing);
-      if (event.key === 'ArrowRight') this.setTime(this.now + 0.1);
-      if (event.key === 'ArrowLeft') this.setTime(this.now - 0.1);
-    });
+    window.addEventListener('keydown', event => this.onTimeKey(event));
     for (const plot of this.plots) {
       const seek = event => this.setTime(plot.timeAt(event.clientX));
       plot.canvas.addEventListener('pointerdown', event => {
@@ -152,6 +150,19 @@ Goshawk.FlightPage = class extends Goshawk.Page {
       });
       plot.canvas.addEventListener('pointermove', event => { if (event.buttons) seek(event); });
     }
+  }
+
+  // Wherever the keyboard is, but where these keys mean something else.
+  onTimeKey(event) {
+    const {id, tagName} = event.target;
+    if (id !== 'time' && ['INPUT', 'BUTTON', 'SELECT'].includes(tagName)) return;
+    const step = event.shiftKey ? 1 : 0.1;
+    const keys = {' ': () => this.play(!this.playing), ArrowRight: () => this.setTime(this.now + step),
+                  ArrowLeft: () => this.setTime(this.now - step), Home: () => this.setTime(this.begin),
+                  End: () => this.setTime(this.end)};
+    if (!keys[event.key]) return;
+    event.preventDefault();
+    keys[event.key]();
   }
 
   play(on) {

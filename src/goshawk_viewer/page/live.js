@@ -2,6 +2,8 @@
 'use strict';
 const kPlotted = 20;     // [s] that the plots show
 const kTracked = 12000;  // samples of the flown track that are kept
+const kStages = ['map_server', 'path_search', 'corridor_builder', 'trajectory_optimizer', 'navigator',
+                 'tracker', 'simulator', 'flight_check'];
 
 const seconds = stamp => stamp.sec + 1e-9 * stamp.nanosec;
 const xyz = p => [p.x, p.y, p.z];
@@ -47,8 +49,17 @@ Goshawk.LivePage = class extends Goshawk.Page {
     $('badge').hidden = false;
     $('badge').textContent = linked ? this.state.mode || 'connected' : 'not connected';
     $('badge').className = linked && this.state.mode !== 'failed' ? '' : 'bad';
+    this.hint(this.missing(linked));
     $('sentence').textContent = linked ? '' : this.state.link;
     $('live-state').textContent = this.state.text;
+  }
+
+  // What one waits for, and what brings it.
+  missing(linked) {
+    const {maps} = this.view || {maps: {grown: true}};
+    if (maps.obstacles || maps.grown) return '';
+    if (linked) return 'Connected. No map comes yet: is map_server running,\nin the same ROS_DOMAIN_ID as the bridge?';
+    return `Waiting for a bridge at ${this.url}.\nStart one with: tools/goshawk launch flight_view`;
   }
 
   onMap(m) {
@@ -91,6 +102,7 @@ Goshawk.LivePage = class extends Goshawk.Page {
       this.view.frame([]);
     }
     this.mapOld = !first;
+    this.tell();
   }
 
   onPath(m) {
@@ -110,7 +122,7 @@ Goshawk.LivePage = class extends Goshawk.Page {
     this.plots[0].limit = v_max;
     this.plots[1].limit = a_max;
     $('speed-top').textContent = v_max;
-    this.setFacts([['trajectory', this.leg.trajectory.duration.toFixed(2) + ' s'],
+    this.setFacts([['planned', this.leg.trajectory.duration.toFixed(2) + ' s'],
                    ['polytopes', String(t.polytopes.length)], ['limits', `${v_max} m/s, ${a_max} m/s²`]]);
     if (!this.view) return;
     this.view.speedScale = v_max;
@@ -166,15 +178,22 @@ Goshawk.LivePage = class extends Goshawk.Page {
   onReport(m) {
     if (m.code === 'ok' && m.request_id === 0) return;
     this.reports.set(m.stage, m);
-    $('reports').replaceChildren(...[...this.reports].flatMap(([stage, report]) => {
+    const place = stage => (kStages.indexOf(stage) + kStages.length + 1) % (kStages.length + 1);
+    const sorted = [...this.reports].sort(([a], [b]) => place(a) - place(b));
+    $('reports').replaceChildren(...sorted.flatMap(([stage, report]) => {
       const dt = document.createElement('dt'), dd = document.createElement('dd');
       const good = report.code === 'ok';
       dt.textContent = stage;
-      dd.textContent = good ? (1e-6 * report.compute_ns).toFixed(2) + ' ms' : report.code;
+      dd.textContent = good ? this.took(report.compute_ns) : report.code;
       dd.className = good ? '' : 'bad';
       dd.title = report.message;
       return [dt, dd];
     }));
+  }
+
+  took(ns) {
+    if (!(ns >= 1000)) return 'ok';  // who only passes things on
+    return ns < 1e5 ? `${Math.round(ns / 1e3)} µs` : `${(ns / 1e6).toFixed(2)} ms`;
   }
 
   step(time) {
@@ -188,7 +207,7 @@ Goshawk.LivePage = class extends Goshawk.Page {
     const style = this.style(), span = [this.now - kPlotted, this.now];
     Object.values(this.curves).forEach((points, k) => {
       while (points.length && points[0][0] < span[0]) points.shift();
-      this.plots[k].set(span, [{color: style.plan, points, width: 1.8}]);
+      this.plots[k].set(span, [{name: 'flown', color: style.plan, points, width: 1.8}], this.now);
     });
     this.plotsOld = true;
   }
@@ -197,27 +216,53 @@ Goshawk.LivePage = class extends Goshawk.Page {
     $('goal-text').textContent = Number($('goal-height').value).toFixed(1) + ' m';
   }
 
+  aim(on) {
+    this.aiming = on;
+    $('goal').setAttribute('aria-pressed', on);
+    document.body.classList.toggle('aiming', on);
+    if (!on && this.view) this.view.setAim(null);
+  }
+
+  // Where the pointer is at the chosen height; the picture and the panel show it.
+  aimAt(event) {
+    const goal = this.view.pick(event, Number($('goal-height').value));
+    this.view.setAim(goal);
+    this.state.text = goal ? `goal: ${this.place(goal)}` : 'the sky is no goal';
+    this.tell();
+    return goal;
+  }
+
+  place(p) { return p.map(c => c.toFixed(2)).join(', '); }
+
+  send(goal) {
+    this.aim(false);
+    const linked = this.state.link === 'connected';
+    if (linked) this.client.sendGoal(goal);
+    this.sent = linked ? goal : null;
+    this.state.text = linked ? `goal sent: ${this.place(goal)}` : 'not sent: there is no connection';
+    this.tell();
+  }
+
   bindGoal() {
-    const button = $('goal'), canvas = $('view');
+    const canvas = $('view');
     let down = null;
-    const aim = on => {
-      this.aiming = on;
-      button.setAttribute('aria-pressed', on);
-      document.body.classList.toggle('aiming', on);
-    };
     $('goal-height').addEventListener('input', () => this.showHeight());
     this.showHeight();
-    button.addEventListener('click', () => aim(!this.aiming));
+    $('goal').addEventListener('click', () => this.aim(!this.aiming && Boolean(this.view)));
+    window.addEventListener('keydown', event => { if (event.key === 'Escape') this.aim(false); });
     canvas.addEventListener('pointerdown', event => { down = [event.clientX, event.clientY]; });
+    canvas.addEventListener('pointermove', event => { if (this.aiming && !event.buttons) this.aimAt(event); });
     canvas.addEventListener('pointerup', event => {
       const moved = down && Math.hypot(event.clientX - down[0], event.clientY - down[1]);
       if (!this.aiming || moved === null || moved > 4) return;
-      const goal = this.view.pick(event, Number($('goal-height').value));
-      if (!goal) return;
-      aim(false);
-      this.client.sendGoal(goal);
-      this.sent = goal;
-      this.state.text = `goal sent: ${goal.map(c => c.toFixed(2)).join(', ')}`;
+      const goal = this.aimAt(event);
+      if (goal) this.send(goal);
+    });
+    $('goal-place').addEventListener('keydown', event => {
+      if (event.key !== 'Enter') return;
+      const goal = event.target.value.split(/[\s,;]+/).filter(Boolean).map(Number);
+      if (goal.length === 3 && goal.every(Number.isFinite)) return this.send(goal);
+      this.state.text = 'a goal is three numbers, like 3, 8, 2';
       this.tell();
     });
   }

@@ -3,11 +3,11 @@
 const $ = id => document.getElementById(id);
 
 Goshawk.layerNames = [
-  ['obstacles', 'obstacles', t => t.high], ['above', 'what is above the cut', t => t.ghost],
+  ['obstacles', 'obstacles', t => t.high], ['above', 'what is above the cut', t => t.ghost, 'hollow'],
   ['grown', 'grown by the vehicle', t => t.grown], ['raw', 'path as searched', t => t.raw, 'thin'],
   ['pruned', 'pruned path', t => t.pruned, 'thin'], ['corridor', 'corridor', t => t.corridor],
   ['trajectory', 'trajectory, by speed', null], ['flown', 'flown track', t => t.flown, 'thin'],
-  ['vehicle', 'vehicle', t => t.accent], ['goals', 'start and goals', t => t.goal]];
+  ['vehicle', 'vehicle', t => t.accent], ['goals', 'start and goals', t => t.goal, 'halves']];
 
 Goshawk.Page = class {
   constructor() {
@@ -16,6 +16,8 @@ Goshawk.Page = class {
     this.now = 0;
     this.buildLegend();
     this.bindButtons();
+    this.bindFold();
+    if (this.view) window.addEventListener('keydown', event => this.onViewKey(event));
     window.addEventListener('resize', () => { if (this.view) this.view.resize(); this.plotsOld = true; });
     this.setTheme(document.documentElement.dataset.theme);
   }
@@ -62,17 +64,48 @@ Goshawk.Page = class {
     $('theme').addEventListener('click', () => {
       this.setTheme(document.documentElement.dataset.theme === 'dark' ? 'light' : 'dark');
     });
-    $('follow').addEventListener('click', () => {
-      this.view.follow = !this.view.follow;
-      $('follow').setAttribute('aria-pressed', this.view.follow);
-    });
+    $('follow').addEventListener('click', () => this.follow());
     $('home').addEventListener('click', () => this.view.frame(this.framed()));
+    const plots = [...$('plots').querySelectorAll('canvas')];
+    plots[0].className = 'shown';
+    $('next-plot').addEventListener('click', () => {  // narrow windows have room for one
+      const k = plots.findIndex(c => c.className === 'shown');
+      plots[k].className = '';
+      plots[(k + 1) % plots.length].className = 'shown';
+      this.plotsOld = true;
+    });
     let timer = 0;
     $('cut').addEventListener('input', () => {
       $('cut-text').textContent = Number($('cut').value).toFixed(1) + ' m';
       clearTimeout(timer);
       timer = setTimeout(() => this.view.setCut(Number($('cut').value)), 30);
     });
+  }
+
+  follow() {
+    this.view.follow = !this.view.follow;
+    $('follow').setAttribute('aria-pressed', this.view.follow);
+  }
+
+  // A narrow window shows the flight first, and the panel when it is wanted.
+  bindFold() {
+    const fold = open => {
+      $('fold').setAttribute('aria-expanded', open);
+      $('folded').hidden = !open;
+    };
+    $('fold').addEventListener('click', () => fold($('folded').hidden));
+    fold(window.innerWidth > 760);
+  }
+
+  // What a pointer does with the picture, by keys.
+  onViewKey(event) {
+    if (event.ctrlKey || event.metaKey || event.altKey || event.target.type === 'text') return;
+    const turns = {a: [-0.1, 0, 1], d: [0.1, 0, 1], w: [0, 0.07, 1], s: [0, -0.07, 1], '+': [0, 0, 0.9],
+                   '=': [0, 0, 0.9], '-': [0, 0, 1 / 0.9]};
+    const key = event.key.toLowerCase();
+    if (turns[key]) this.view.turn(...turns[key]);
+    if (key === '0') this.view.frame(this.framed());
+    if (key === 'f') this.follow();
   }
 
   // The heights of the map, and where to cut it at first.
@@ -90,8 +123,9 @@ Goshawk.Page = class {
     const theme = Goshawk.themes[name];
     const swatches = $('layers').querySelectorAll('i');
     Goshawk.layerNames.forEach(([, , color], k) => {
-      swatches[k].style.background =
-          color ? '#' + color(theme).toString(16).padStart(6, '0') : this.gradient;
+      const css = hex => '#' + hex.toString(16).padStart(6, '0');
+      swatches[k].style.background = !color ? this.gradient : swatches[k].className === 'halves' ?
+          `linear-gradient(90deg, ${css(theme.body)} 50%, ${css(color(theme))} 50%)` : css(color(theme));
     });
     this.plotsOld = true;
   }
@@ -117,13 +151,19 @@ Goshawk.Page = class {
     this.plots = [
       new Goshawk.Plot(canvases[0], {title: 'speed', unit: 'm/s', limit: limits && limits.v_max}),
       new Goshawk.Plot(canvases[1], {title: 'acceleration', unit: 'm/s²', limit: limits && limits.a_max}),
-      new Goshawk.Plot(canvases[2], {title: 'tracking error', unit: 'mm', scale: 1000}),
+      new Goshawk.Plot(canvases[2], {title: 'tracking error', unit: 'mm', scale: 1000, least: 1,
+                                      absent: 'nothing flown yet'}),
     ];
   }
 
   drawPlots() {
     const style = this.style();
     for (const plot of this.plots) plot.draw(this.now, style);
+  }
+
+  // What the picture lacks, in its middle; '' where nothing is missing.
+  hint(text) {
+    if ($('hint').textContent !== text) $('hint').textContent = text;
   }
 
   run() {

@@ -1,19 +1,20 @@
 // Plots against time on a canvas of their own: what was planned, what was flown, and the limit.
 'use strict';
 Goshawk.Plot = class {
-  // @param limit a dashed line, or null
-  constructor(canvas, {title, unit, limit = null, scale = 1}) {
-    Object.assign(this, {canvas, title, unit, limit, scale, series: []});
-    this.span = [0, 1];
+  // @param limit a dashed line, or null; least: what the axis goes up to at least [unit], so that noise
+  // stays small; absent: what an empty plot says
+  constructor(canvas, {title, unit, limit = null, scale = 1, least = 0.1, absent = 'nothing to show yet'}) {
+    Object.assign(this, {canvas, title, unit, limit, scale, least, absent, series: [], zero: 0});
+    this.set([0, 1], []);
   }
 
-  // series: [{color, points: [[t, value], ...], width}]
-  set(span, series) {
-    this.span = span;
-    this.series = series;
+  // series: [{name, color, points: [[t, value], ...], width}]; zero: the time that the axis calls 0
+  set(span, series, zero = span[0]) {
+    Object.assign(this, {span, series, zero});
     let top = this.limit === null ? 0 : this.limit * this.scale;
     for (const s of series) for (const [, v] of s.points) top = Math.max(top, v * this.scale);
-    this.top = 1.12 * (top || 1);
+    this.top = 1.12 * Math.max(top, this.least);
+    this.empty = series.every(s => !s.points.length);
   }
 
   x(t) { return this.left + (t - this.span[0]) / (this.span[1] - this.span[0]) * this.width; }
@@ -27,6 +28,7 @@ Goshawk.Plot = class {
   draw(now, style) {
     const ratio = Math.min(window.devicePixelRatio || 1, 2), c = this.canvas;
     const w = c.clientWidth, h = c.clientHeight;
+    if (!w) return;  // a narrow window shows another one
     if (c.width !== Math.round(w * ratio) || c.height !== Math.round(h * ratio)) {
       c.width = Math.round(w * ratio);
       c.height = Math.round(h * ratio);
@@ -34,28 +36,54 @@ Goshawk.Plot = class {
     const g = c.getContext('2d');
     g.setTransform(ratio, 0, 0, ratio, 0, 0);
     g.clearRect(0, 0, w, h);
-    this.left = 34; this.width = w - 44; this.upper = 22; this.bottom = h - 6;
+    this.left = 34; this.width = w - 44; this.upper = 24; this.bottom = h - 18;
     g.font = '11px ' + style.font;
     this.drawFrame(g, w, style);
+    if (this.empty) return this.drawAbsent(g, style);
+    this.drawTimes(g, style);
     for (const s of this.series) this.drawSeries(g, s);
     if (this.limit !== null) this.drawLimit(g, style);
     this.drawCursor(g, now, style);
+    this.drawLegend(g, w, style);
   }
 
   drawFrame(g, w, style) {
     g.fillStyle = style.text;
     g.textAlign = 'left';
     g.fillText(this.title, this.left, 13);
+    this.headEnd = this.left + g.measureText(this.title).width;
     g.fillStyle = style.soft;
     g.textAlign = 'right';
     g.fillText(this.unit, w - 10, 13);
-    const step = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000].find(s => this.top / s <= 4) || this.top / 3;
+    const step = Goshawk.tickStep(this.top, 4);
     g.strokeStyle = style.line;
     g.lineWidth = 1;
     for (let v = 0; v <= this.top; v += step) {
       const y = Math.round(this.y(v / this.scale)) + 0.5;
       g.beginPath(); g.moveTo(this.left, y); g.lineTo(this.left + this.width, y); g.stroke();
-      g.fillText(String(+v.toPrecision(3)), this.left - 6, y + 3.5);
+      if (!this.empty) g.fillText(String(+v.toPrecision(3)), this.left - 6, y + 3.5);
+    }
+  }
+
+  drawAbsent(g, style) {
+    g.fillStyle = style.soft;
+    g.textAlign = 'center';
+    g.fillText(this.absent, this.left + this.width / 2, (this.upper + this.bottom) / 2);
+  }
+
+  // Seconds from the zero on; the last one has its unit.
+  drawTimes(g, style) {
+    const [begin, end] = this.span.map(t => t - this.zero);
+    const step = Goshawk.tickStep(end - begin, Math.max(2, Math.min(8, this.width / 60)));
+    const last = Math.floor(end / step + 1e-6);
+    g.fillStyle = style.soft;
+    g.strokeStyle = style.line;
+    for (let k = Math.ceil(begin / step - 1e-6); k <= last; ++k) {
+      const x = this.x(this.zero + k * step), words = String(+(k * step).toFixed(3)) + (k === last ? ' s' : '');
+      g.beginPath(); g.moveTo(x, this.bottom); g.lineTo(x, this.bottom + 4); g.stroke();
+      const half = g.measureText(words).width / 2;
+      g.textAlign = 'center';
+      g.fillText(words, Math.min(x, this.left + this.width + 8 - half), this.bottom + 14);
     }
   }
 
@@ -89,8 +117,38 @@ Goshawk.Plot = class {
     g.beginPath(); g.arc(x, this.y(value), 3.2, 0, 7); g.fill();
     g.textAlign = 'left';
     g.fillStyle = style.text;
-    g.fillText((value * this.scale).toFixed(2), this.left + g.measureText(this.title).width + 10, 13);
+    const words = (value * this.scale).toFixed(2);
+    g.fillText(words, this.headEnd + 10, 13);
+    this.headEnd += 10 + g.measureText('0.00').width;  // the legend rests while values change
   }
+
+  // Which line is which, from the right, as far as there is room.
+  drawLegend(g, w, style) {
+    const entries = this.series.map(s => ({name: s.name, color: s.color, width: Math.min(3, s.width || 1.5)}));
+    if (this.limit !== null) entries.push({name: 'limit', color: style.limit, width: 1.2, dash: [4, 3]});
+    let x = w - 10 - g.measureText(this.unit).width - 10;
+    for (const {name, color, width, dash} of entries.reverse()) {
+      const begin = x - g.measureText(name).width - 16;
+      if (begin < this.headEnd + 8) return;
+      g.save();
+      g.setLineDash(dash || []);
+      g.strokeStyle = color;
+      g.lineWidth = width;
+      g.beginPath(); g.moveTo(begin, 9.5); g.lineTo(begin + 12, 9.5); g.stroke();
+      g.restore();
+      g.textAlign = 'left';
+      g.fillStyle = style.soft;
+      g.fillText(name, begin + 16, 13);
+      x = begin - 9;
+    }
+  }
+};
+
+// The smallest of 1, 2, 5 times a power of ten that goes into a length at most `most` times.
+Goshawk.tickStep = function(length, most) {
+  if (!(length > 0)) return 1;
+  const power = 10 ** Math.floor(Math.log10(length / most));
+  return [1, 2, 5, 10].map(s => s * power).find(s => length / s <= most + 1e-9) || 10 * power;
 };
 
 // Linear between samples [[t, value], ...]; null outside.

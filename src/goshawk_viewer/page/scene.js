@@ -14,7 +14,7 @@ Goshawk.View = class {
     this.controls.maxPolarAngle = 0.495 * Math.PI;
     this.layers = {};
     for (const name of ['obstacles', 'above', 'grown', 'raw', 'pruned', 'corridor', 'trajectory',
-                        'flown', 'vehicle', 'goals', 'ground']) {
+                        'flown', 'vehicle', 'goals', 'aim', 'ground']) {
       this.layers[name] = new G3.Group();
       this.scene.add(this.layers[name]);
     }
@@ -73,12 +73,6 @@ Goshawk.View = class {
     return group;
   }
 
-  // kind: 'obstacles' or 'grown'
-  setMap(kind, voxels) {
-    this.maps[kind] = voxels;
-    this.drawMaps();
-  }
-
   setCut(z) {
     this.cut = z;
     this.drawMaps();
@@ -102,7 +96,7 @@ Goshawk.View = class {
     const {obstacles, grown} = this.maps;
     for (const name of ['obstacles', 'above', 'grown', 'ground']) this.clear(name);
     const radius = this.bounds().getBoundingSphere(new G3.Sphere()).radius;
-    this.haze = [2.2 * radius, 6.5 * radius];
+    if (!this.haze) this.haze = [2.2 * radius, 6.5 * radius];
     const t = this.theme;
     const shown = name => this.layers[name].visible;
     if (obstacles) {
@@ -235,6 +229,16 @@ Goshawk.View = class {
     this.redraw = true;
   }
 
+  // Where a goal would be [m], with its foot on the floor; null: nowhere.
+  setAim(p) {
+    this.clear('aim');
+    this.redraw = true;
+    if (!p) return;
+    const floor = this.bounds().min.z, color = this.theme.goal;
+    this.dot('aim', p, 0.09, color);
+    this.line('aim', [p, [p[0], p[1], floor]], {color, width: 2, hidden: true, order: 6});
+  }
+
   makeVehicle(radius = this.bodyRadius || 0.15) {
     this.bodyRadius = radius;
     const old = this.body, group = this.clear('vehicle');
@@ -256,29 +260,70 @@ Goshawk.View = class {
 
   // Looks at the points from above, from the side where the fewest obstacles stand in the way.
   frame(points) {
-    const box = new G3.Box3();
-    points.forEach(p => box.expandByPoint(new G3.Vector3(...p)));
-    if (box.isEmpty()) box.copy(this.bounds());
-    const size = box.getSize(new G3.Vector3()), target = box.getCenter(new G3.Vector3());
-    const reach = Math.max(size.length(), 4 * this.bodyRadius + 2);
-    // Narrow windows need more distance.
-    const distance = 1.3 * reach / Math.min(1, 0.75 * this.camera.aspect);
-    const way = Goshawk.bestWay(this.solid(), this.cut, points, size.toArray());
-    this.controls.target.copy(target);
-    this.camera.position.copy(target).add(new G3.Vector3(...way).multiplyScalar(distance));
+    const spots = points.length ? points : this.corners();
+    const box = new G3.Box3().setFromPoints(spots.map(p => new G3.Vector3(...p)));
+    const way = Goshawk.bestWay(points.length ? this.solid() : null, this.cut, spots, this.camera.aspect < 1);
+    box.getCenter(this.controls.target);
     this.shiftFromPanel();
+    Goshawk.fit(this.camera, this.controls.target, new G3.Vector3(...way),
+                spots.map(p => new G3.Vector3(...p)), this.freePart(), 20 * this.bodyRadius + 1);
     this.controls.update();
+    this.setHaze();
+  }
+
+  // Of what there is of the map below the cut.
+  corners() {
+    const {min, max} = this.bounds();
+    const top = Math.max(min.z, Math.min(max.z, this.cut));
+    return [min.z, top].flatMap(z => [min.x, max.x].flatMap(x => [min.y, max.y].map(y => [x, y, z])));
+  }
+
+  // What lies behind is hazy, as far as the eye is away.
+  setHaze() {
+    const away = this.camera.position.distanceTo(this.controls.target);
+    const radius = this.bounds().getBoundingSphere(new G3.Sphere()).radius;
+    this.haze = [away + 1.2 * radius, away + 6 * radius];
+    this.scene.traverse(o => {
+      if (o.material && o.material.uniforms && o.material.uniforms.haze) {
+        o.material.uniforms.haze.value.set(...this.haze);
+      }
+    });
+    this.redraw = true;
+  }
+
+  // Turns around the target [rad], and comes closer (below 1) or goes away.
+  turn(azimuth, elevation, scale) {
+    const {camera, controls} = this;
+    const [x, y, z] = camera.position.clone().sub(controls.target).toArray();
+    const r = Math.hypot(x, y, z), level = Math.atan2(y, x) + azimuth;
+    const height = Math.max(0.02, Math.min(1.55, Math.asin(z / r) + elevation));
+    camera.position.set(Math.cos(height) * Math.cos(level), Math.cos(height) * Math.sin(level), Math.sin(height))
+        .multiplyScalar(r * scale).add(controls.target);
     this.redraw = true;
   }
 
   // The map that stands in the way of sight, or nothing.
   solid() { return this.maps.obstacles || this.maps.grown; }
 
+  // How wide a stripe [pixel] the panel takes: none where it lies over a narrow picture.
+  panelWidth() {
+    const panel = document.getElementById('panel');
+    return window.innerWidth > 760 ? panel.getBoundingClientRect().right : 0;
+  }
+
   // The middle of the picture is the middle of what the panel leaves free.
   shiftFromPanel() {
     const w = this.canvas.clientWidth || 1, h = this.canvas.clientHeight || 1;
-    const shift = w > 900 ? 120 : 0;
-    this.camera.setViewOffset(w, h, -shift, 0, w, h);
+    this.camera.setViewOffset(w, h, -this.panelWidth() / 2, 0, w, h);
+  }
+
+  // Where the flight is to be seen: right of the panel, or below it; -1 to 1.
+  freePart() {
+    const w = this.canvas.clientWidth || 1, h = this.canvas.clientHeight || 1;
+    const left = this.panelWidth(), above = left ? 0 : 50;
+    const side = Math.max(24, 0.13 * (w - left)), below = Math.max(24, 0.13 * h);
+    return {left: 2 * (left + side) / w - 1, right: 1 - 2 * side / w,
+            bottom: 2 * below / h - 1, top: 1 - 2 * (below + above) / h};
   }
 
   // Where the pointer meets the plane of a height. @return [x, y, z], or nothing

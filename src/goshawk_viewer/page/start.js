@@ -2,6 +2,8 @@
 'use strict';
 window.addEventListener('DOMContentLoaded', () => {
   const data = JSON.parse(document.getElementById('flight').textContent);
-  window.goshawk = data.live ? new Goshawk.LivePage(data) : new Goshawk.FlightPage(data);
-  window.goshawk.run();
+  setTimeout(() => {  // the page says first that it draws
+    window.goshawk = data.live ? new Goshawk.LivePage(data) : new Goshawk.FlightPage(data);
+    window.goshawk.run();
+  }, 30);
 });

@@ -27,6 +27,8 @@ import page_server
 
 DONE, NOT_DONE, WRONG_CALL = 0, 1, 2
 MARK = "@FLIGHT@"
+LARGEST_READ_FIRST = 64 << 20  # [byte] of a recording
+AROUND = (5.0, 4.0, 1.0)  # [m] what a live picture shows at least
 
 
 class Fault(Exception):
@@ -37,7 +39,10 @@ class Fault(Exception):
 
 def parse(arguments):
     parser = argparse.ArgumentParser(prog="goshawk view", description=__doc__.split("\n\n")[0],
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+                                     formatter_class=argparse.RawDescriptionHelpFormatter,
+                                     epilog="examples:\n  goshawk view\n"
+                                     "  goshawk view flight.mcap --port 0\n"
+                                     "  goshawk view --live --foxglove")
     parser.add_argument("what", nargs="?", help="flight folder, or MCAP recording (default: the "
                         "newest folder in ./flights)")
     parser.add_argument("--live", action="store_true", help="look at what flies now")
@@ -82,12 +87,13 @@ def part_of(what, name):
     return readable(path / name if path.is_dir() else path)
 
 
-def page_of_recording(prefix, recording):
+def page_of_recording(prefix, recording, template=None):
     """The page of a flight, made from a recording alone. @return its bytes"""
     with tempfile.TemporaryDirectory(prefix="goshawk_view_") as folder:
         page = pathlib.Path(folder) / "flight.html"
+        template = template or f"{prefix}/share/goshawk/viewer/page.html"
         made = subprocess.run([f"{prefix}/lib/goshawk/recording_page", str(recording),
-                               f"{prefix}/share/goshawk/viewer/page.html", str(page)],
+                               template, str(page)],
                               stdin=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
         if made.returncode != 0:
             code, _, sentence = made.stderr.strip().rpartition("\n")[2].partition(": ")
@@ -95,6 +101,37 @@ def page_of_recording(prefix, recording):
                         WRONG_CALL if code in ("io_failed", "invalid_input") else NOT_DONE)
         sys.stderr.write(made.stderr)  # what is missing in it
         return page.read_bytes()
+
+
+def places_flown(prefix, recording):
+    """Where the recorded flight was: what a picture of it is about. @return [[x, y, z], ...]"""
+    if recording.stat().st_size > LARGEST_READ_FIRST:
+        return []
+    try:
+        with tempfile.NamedTemporaryFile("w", suffix=".html") as template:
+            template.write(MARK)
+            template.flush()
+            flight = json.loads(page_of_recording(prefix, recording, template.name))
+    except (Fault, ValueError):
+        return []  # the studio says itself what it cannot read
+    track = flight["flown"]["p"]
+    places = [track[k:k + 3] for k in range(0, len(track), 3)]
+    for leg in flight["legs"]:
+        places += leg["waypoints"]
+    return places[::max(1, len(places) // 60)]
+
+
+def place_now(prefix):
+    """Around where a vehicle of this domain is now, in a list; [] where none says so soon."""
+    asked = subprocess.run([f"{prefix}/bin/goshawk", "topic", "echo", "odom", "--once", "--json",
+                            "--timeout", "3"], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                           stderr=subprocess.DEVNULL, text=True)
+    try:
+        p = json.loads(asked.stdout)["pose"]["pose"]["position"]
+    except (ValueError, KeyError):
+        return []
+    return [[p["x"] + x, p["y"] + y, p["z"] + AROUND[2]] for x in (-AROUND[0], AROUND[0])
+            for y in (-AROUND[1], AROUND[1])]
 
 
 def live_page(prefix, bridge):
@@ -199,9 +236,11 @@ def foxglove_site(options):
     site.add("/", (share / "studio/index.html").read_bytes())
     if options.live:
         shown, source = f"what flies now, by {options.bridge}", {"bridge": options.bridge}
+        source["places"] = [] if options.check else place_now(options.prefix)
     else:
         recording = part_of(options.what, "flight.mcap")
         shown, source = str(recording), {"recording": "/recording.mcap"}
+        source["places"] = [] if options.check else places_flown(options.prefix, recording)
         site.add("/recording.mcap", recording)
     site.add("/show.json", json.dumps(source).encode())
     return site, f"{shown}, in Foxglove Studio"

@@ -19,11 +19,21 @@ function settings() {
 
 // In this page the stages' own messages are drawn (goshawk_messages.js), no second time as markers;
 // of a recording plots show all, live the last seconds.
-function fitted(layout, {recording}) {
+function fitted(layout, {recording, places}) {
   const topics = layout.configById['3D!goshawk'].topics;
   for (const name of Object.keys(topics)) if (name.startsWith('/view/')) topics[name].visible = false;
   for (const panel of Object.values(layout.configById)) if (recording) delete panel.followingViewWidth;
+  if (places.length) Object.assign(layout.configById['3D!goshawk'].cameraState, cameraOn(places));
   return layout;
+}
+
+// Looks at the places from above, across their long side.
+function cameraOn(places) {
+  const axes = [0, 1, 2].map(i => places.map(p => p[i]));
+  const lower = axes.map(a => Math.min(...a)), upper = axes.map(a => Math.max(...a));
+  const turned = 15 - Goshawk.longSide(places).angle * 180 / Math.PI;
+  return {targetOffset: V3.mix(lower, upper, 0.5), distance: 4 + 0.95 * V3.norm(V3.add(upper, lower, -1)),
+          phi: 35, thetaOffset: (turned + 360) % 360};
 }
 
 function layouts(data) {
@@ -74,7 +84,8 @@ async function main() {
   };
   const source = await (await said('show.json')).json();
   const layout = fitted(await (await said('layout.json')).json(), source);
-  const drawing = await (await said('goshawk_messages.js')).text();
+  const drawing = `const kPlaces = ${JSON.stringify(source.places)};\n` +
+      await (await said('goshawk_messages.js')).text();
   show(source);
   await window.initI18n();
   const app = React.createElement(window.App, {

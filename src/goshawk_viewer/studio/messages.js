@@ -1,5 +1,6 @@
 // What stages say, as scenes that Foxglove's 3D panel draws: no visualizer and no markers needed.
-// scripts/bundle.py puts theme.js, geometry.js and octomap.js before it. Frame map, [m].
+// scripts/bundle.py puts theme.js, geometry.js, octomap.js and sight.js before it, main.js the places
+// that the picture is about, kPlaces: [[x, y, z], ...]. Frame map, [m].
 'use strict';
 
 const kZero = {sec: 0, nsec: 0};
@@ -28,9 +29,10 @@ function line(points, thickness, color, {colors = [], type = 0, scale_invariant 
 const triangles = (points, indices, color, colors = []) =>
     ({pose: kStill, points: points.map(point), color, colors, indices});
 
-// The visible faces of a map, brighter the higher, darker in nooks.
+// The visible faces of a map below what hides the places, brighter the higher, darker in nooks.
 function mapTriangles(voxels, low, high, opacity) {
-  const faces = Goshawk.voxelFaces(voxels, 0, voxels.size[2]);
+  const top = kPlaces.length ? voxels.layersBelow(Goshawk.bestCut(voxels, kPlaces)) : voxels.size[2];
+  const faces = Goshawk.voxelFaces(voxels, 0, top);
   const points = [], colors = [], indices = [], unit = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
   const count = Math.min(faces.face.length, kMostFaces);
   for (let f = 0; f < count; ++f) {

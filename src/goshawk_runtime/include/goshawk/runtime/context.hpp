@@ -32,6 +32,7 @@ struct ParticipantInfo {
   std::string guid_prefix;
   std::string name;
   std::vector<std::string> nodes;
+  std::string version = "";  // of Goshawk; empty: another program, or one that does not tell
 };
 
 /// One DDS participant: a process' membership in a domain.

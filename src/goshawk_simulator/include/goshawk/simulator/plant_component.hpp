@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "goshawk/conversions/vehicle.hpp"
@@ -106,6 +107,8 @@ class PlantComponent : public runtime::Component {
 
   void step() {
     const std::int64_t now_ns = node_.now_ns();
+    // In a turn that somebody else gives it, the plant has no time before its first step.
+    if (last_ns_ == 0) last_ns_ = now_ns - std::llround(1e9 / config_.rate_hz);
     // After a pause (a stopped machine, a clock that was set) the world goes on, it does not jump.
     const double dt_s = std::clamp(double(now_ns - last_ns_) * 1e-9, 0.0, 0.1);
     last_ns_ = now_ns;

@@ -33,7 +33,7 @@ class ActiveSetSolver {
   /// limits do not allow. @pre the problem's sizes agree, problem.scale is false
   Outcome solve(const SplineProblem& problem, const Settings& settings);
 
-  /// Whether to try at all: fixed durations and at most 40 pieces. A rule of the problem alone.
+  /// Whether to try at all: fixed durations and at most 100 pieces. A rule of the problem alone.
   static bool suits(const SplineProblem& problem);
   /// Whether an outcome is final; where not, SplineSolver finds the same optimum.
   static bool decided(const Outcome& outcome);
