@@ -1,3 +1,5 @@
+#include <malloc.h>
+
 #include <octomap/OcTree.h>
 
 #include <optional>
@@ -73,6 +75,7 @@ class MapServerComponent : public Component {
       raw_voxels_ = node.advertise<msg::VoxelGrid>("map/voxels/raw", Qos::latched());
     }
     publish_whole();
+    malloc_trim(0);  // what loading and publishing took for a moment; glibc may keep it for ever
     const auto& grid = map_.grid();
     reporter_.ready("serves " + to_text(grid.geometry.size) + " voxels of " +
                     std::to_string(grid.geometry.resolution_m) + " m, grown by " +

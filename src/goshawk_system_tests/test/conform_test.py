@@ -7,7 +7,33 @@ import harness
 from harness import GOSHAWK, SOURCE, SystemTest, note
 
 
+# Templates, and how they are configured as their users would.
+TEMPLATES = {
+    "search_stage_c": [f"-DIDL={SOURCE / 'idl'}",
+                       f"-DSOURCES={SOURCE / 'src/goshawk_system_tests/cyclone'}"],
+    "search_stage_cpp": [f"-DCMAKE_PREFIX_PATH={harness.PREFIX}"],
+}
+
+
 class Conform(SystemTest):
+    @classmethod
+    def setUpClass(cls):
+        """The templates are compiled while others are examined: alone, with what is installed."""
+        cls.builder = harness.Sandbox()
+        cls.builds = {}
+        for template, options in TEMPLATES.items():
+            folder = cls.builder.folder / template
+            cls.builds[template] = cls.builder.start(
+                "/bin/sh", "-c", 'cmake -S "$1" -B "$2" -DCMAKE_BUILD_TYPE=Debug "$3" '
+                '${4:+"$4"} && cmake --build "$2"', "-", SOURCE / "docs" / "templates" / template,
+                folder, *options)
+
+    @classmethod
+    def tearDownClass(cls):
+        left = cls.builder.close()
+        if left:
+            raise AssertionError(f"processes outlived the test: {left}")
+
     def start(self, *arguments):
         """In a domain of its own: several may run at once."""
         domain = harness.Domain()
@@ -28,13 +54,12 @@ class Conform(SystemTest):
         return {item["name"]: item["detail"] for item in report["items"] if not item["passed"]}
 
     def test_every_stage_of_ours_passes(self):
-        # That of a tracker flies, and waits most of the time: the others are examined meanwhile.
-        tracker = self.start("tracker", "-n", "20")
-        for stage in ("path_search", "corridor_builder", "trajectory_optimizer", "map_server",
-                      "tracker"):
+        # At once: the kits wait most of the time, that of a tracker flies.
+        started = {stage: self.start(stage, "-n", "20") for stage in (
+            "path_search", "corridor_builder", "trajectory_optimizer", "tracker", "map_server")}
+        for stage, process in started.items():
             with self.subTest(stage=stage):
-                outcome, report = self.result(tracker if stage == "tracker" else
-                                              self.start(stage, "-n", "20"))
+                outcome, report = self.result(process)
                 self.assertEqual(self.failed(report), {})
                 self.assertEqual(outcome.status, 0)
                 self.assertGreaterEqual(len(report["items"]), 15)
@@ -66,25 +91,18 @@ class Conform(SystemTest):
         self.assertEqual(outcome.status, 0)
         return report
 
-    def build(self, template, *options):
-        """A template as its users have it: alone, with what is installed. @return its program"""
-        folder = self.sandbox.folder / template
-        outcome = self.sandbox.call("cmake", "-S", SOURCE / "docs" / "templates" / template, "-B",
-                                    folder, "-DCMAKE_BUILD_TYPE=Debug", *options, timeout_s=60)
-        self.assertEqual(outcome.status, 0, str(outcome))
-        outcome = self.sandbox.call("cmake", "--build", folder, timeout_s=300)
-        self.assertEqual(outcome.status, 0, str(outcome))
-        return folder / "my_search"
+    def built(self, template):
+        """@return the program that a template became"""
+        process = self.builds[template]
+        self.assertIsNotNone(process.wait(300.0), str(process.outcome()))
+        self.assertEqual(process.outcome().status, 0, str(process.outcome()))
+        return self.builder.folder / template / "my_search"
 
     def test_the_template_in_c_is_built_from_idl_alone_and_passes(self):
-        program = self.build("search_stage_c", f"-DIDL={SOURCE / 'idl'}",
-                             f"-DSOURCES={SOURCE / 'src/goshawk_system_tests/cyclone'}")
-        self.passes("path_search", program)
+        self.passes("path_search", self.built("search_stage_c"))
 
     def test_the_template_in_cpp_is_built_with_what_is_installed_and_passes(self):
-        prefixes = f"-DCMAKE_PREFIX_PATH={harness.PREFIX}"
-        program = self.build("search_stage_cpp", prefixes)
-        self.passes("path_search", program)
+        self.passes("path_search", self.built("search_stage_cpp"))
 
     def test_wrong_calls_and_an_empty_domain_are_sentences(self):
         outcome, report = self.conform("path_serch")

@@ -64,7 +64,8 @@ class Pages(SystemTest):
     def test_links_lead_somewhere(self):
         for page in [*PAGES, *SOURCE.glob("*.md"), *SOURCE.glob("docs/adr/*.md"),
                      *SOURCE.glob("src/*/README.md")]:
-            for target in re.findall(r"\]\(([^)#:\s]+)(?:#[^)]*)?\)", page.read_text()):
+            text = re.sub(r"(?m)^    .*$", "", page.read_text())  # code has no links
+            for target in re.findall(r"\]\(([^)#:\s]+)(?:#[^)]*)?\)", text):
                 with self.subTest(page=page.name, link=target):
                     self.assertTrue((page.parent / target).exists())
 
