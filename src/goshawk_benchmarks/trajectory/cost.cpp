@@ -177,6 +177,30 @@ Json scale_row(int segments, int rounds) {
            timing[0].median_us() / solution->pieces / solution->iterations}};
 }
 
+// Both solvers' times over the pieces, as rows of one plot.
+void draw_solvers(Report& report, const Json& cost) {
+  Json points = Json::array();
+  for (const Json& row : cost) {
+    if (!row.contains("active_set_us")) continue;
+    points.push_back(
+        {{"solver", "interior point"}, {"pieces", row["pieces"]}, {"us", row["time_us"]}});
+    if (!row["active_set_solved"]) continue;
+    points.push_back(
+        {{"solver", "active set"}, {"pieces", row["pieces"]}, {"us", row["active_set_us"]}});
+  }
+  report.note("solvers", points);
+  report.draw({.file = "solvers",
+               .title = "Fixed durations, one quintic a segment",
+               .x = "pieces",
+               .y = "us",
+               .x_label = "pieces",
+               .y_label = "median time of the processor [us]",
+               .series = "solver",
+               .log_x = true,
+               .log_y = true,
+               .from = "solvers"});
+}
+
 }  // namespace
 
 void measure_cost(Report& report) {
@@ -190,6 +214,7 @@ void measure_cost(Report& report) {
     rows.push_back(scale_row(segments, std::max(5, rounds / 4)));
   }
   report.note("cost", rows);
+  draw_solvers(report, rows);
   Json binding = Json::array();
   for (const LimitNorm norm : {LimitNorm::per_axis, LimitNorm::euclidean}) {
     for (const double factor : {1.001, 1.02, 1.05, 1.1, 1.2, 1.5, 2.0}) {

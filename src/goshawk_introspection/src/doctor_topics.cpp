@@ -75,9 +75,13 @@ void check_topic(const Owners& names, const std::string& topic,
   if (findings.size() > before) return;
   // Whoever asks comes and goes.
   if (writers == 0 && readers > 0 && topic != "/parameter_request") {
+    std::set<std::string> all;
+    for (const auto& e : ends) all.insert(who(names, e));
+    std::string list;
+    for (const auto& name : all) list += (list.empty() ? "" : ", ") + name;
     findings.push_back({"topic " + topic, Level::note,
-                        "is read by " + who(names, ends.front()) + ", but nobody writes it",
-                        "that stage waits for it", "start who writes it, if it is wanted"});
+                        "is read by " + list + ", but nobody writes it", "that stage waits for it",
+                        "start who writes it, if it is wanted"});
   }
 }
 

@@ -109,8 +109,8 @@ int list_parameters(const CommonOptions& common, const std::string& node) {
     }
     for (const auto& [d, old] : list) {
       const std::string value = shown(d, d.value) + (d.unit.empty() ? "" : " " + d.unit);
-      std::cout << padded(d.name, names + 2) << padded(value, values + 3)
-                << (d.at_run_time ? "" : "at start only") << "\n";
+      std::cout << padded(d.name, names + 2)
+                << (d.at_run_time ? value : padded(value, values + 3) + "at start only") << "\n";
     }
     if (list.empty()) std::cout << "(no parameters)\n";
   });

@@ -21,10 +21,17 @@ Error malformed(const std::string& why) {
   return fail(ErrorCode::invalid_input, "the request " + why);
 }
 
+// What ends up in logs must not look like another line of them.
+bool has_control_characters(const std::string& text) {
+  return std::ranges::any_of(text, [](unsigned char c) { return c < 0x20 || c == 0x7f; });
+}
+
 // The form alone; what it asks for is another matter.
 Status check(const goshawk_msgs::msg::ParameterRequest& request) {
   if (request.id() == 0) return malformed("has id 0: count from 1");
-  if (request.client().empty()) return malformed("names no client: say who asks");
+  if (request.client().empty() || has_control_characters(request.client())) {
+    return malformed("names no client: say who asks");
+  }
   if (request.verb() != "get" && request.verb() != "set") {
     return malformed("has a verb that is neither get nor set");
   }
@@ -33,6 +40,9 @@ Status check(const goshawk_msgs::msg::ParameterRequest& request) {
   if (request.verb() == "set" && list.empty()) return malformed("sets nothing: name a parameter");
   for (const Parameter& p : list) {
     if (p.name().empty()) return malformed("holds a parameter without a name");
+    if (has_control_characters(p.name() + p.value())) {
+      return malformed("holds a control character");
+    }
     if (p.name().size() > kLongestName) return malformed("holds a name of endless length");
     if (p.value().size() > kLongestValue) {
       return malformed("holds a value of endless length for " + p.name());

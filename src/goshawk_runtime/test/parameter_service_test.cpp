@@ -142,6 +142,8 @@ TEST_F(ParameterTopics, WhatIsWrongIsASentenceAndChangesNothing) {
   EXPECT_THAT(refusal(request(++id, "set", {{"", "1"}})), HasSubstr("without a name"));
   EXPECT_THAT(refusal(request(++id, "set", {{"label", std::string(5000, 'x')}})),
               HasSubstr("endless length for label"));
+  EXPECT_THAT(refusal(request(++id, "set", {{"label", "a\n[navigator] info: b"}})),
+              HasSubstr("control character"));
   EXPECT_THAT(refusal(request(0, "get")), HasSubstr("has id 0"));
   std::vector<std::pair<std::string, std::string>> many(1001, {"label", "x"});
   EXPECT_THAT(refusal(request(++id, "set", many)), HasSubstr("too many"));

@@ -1,6 +1,8 @@
 #!/usr/bin/python3
 """Wrong calls and bad files: each ends by itself, with the documented status, code and sentence."""
 
+import re
+
 import harness
 import second_opinion
 from calls_case import DONE, NOT_DONE, WRONG_CALL, CallsCase, ascii_pcd
@@ -221,12 +223,30 @@ class BadCalls(CallsCase):
             self.expect([verb, "--gaol", "1,2,3"], WRONG_CALL, "invalid_input", "gaol")
 
     def test_help(self):
-        for verb in ("plan", "fly", "world", "launch", "run", "topic", "node", "param", "bench"):
+        for verb in ("topic", "node", "param", "bench"):
             with self.subTest(verb=verb):
-                outcome = self.sandbox.goshawk(verb, "--help", timeout_s=20)
-                self.assertEqual(outcome.status, DONE, str(outcome))
-                self.assertIn(verb, outcome.out)
+                self.assertIn(verb, self.help_of(verb))
         self.assertEqual(self.sandbox.goshawk("--help").status, DONE)
+        self.assertIn("goshawk ", self.sandbox.goshawk("--version").out)
+
+    def help_of(self, verb):
+        outcome = self.sandbox.goshawk(*verb.split(), "--help", timeout_s=20)
+        self.assertEqual(outcome.status, DONE, str(outcome))
+        return outcome.out
+
+    def test_help_shows_examples_of_its_own_options(self):
+        for verb in ("plan", "fly", "check", "world", "campaign", "launch", "view", "run",
+                     "bench plan", "conform", "record", "replay", "topic echo", "topic hz",
+                     "topic pub", "param get", "param set", "param list", "param describe"):
+            with self.subTest(verb=verb):
+                text = self.help_of(verb)
+                head, _, examples = text.partition("xample")
+                shown = re.findall(rf"^  goshawk {verb}\b.*", examples, re.MULTILINE)
+                self.assertTrue(shown, text)
+                for option in re.findall(r" (--?[a-z][a-z-]*)\b", " ".join(shown)):
+                    # What stands behind --ros-args is ROS 2's.
+                    if option not in ("--ros-args", "-p", "-r", "--params-file", "--log-level"):
+                        self.assertIn(option, head)
 
     def test_numbers_of_fly(self):
         fly = ["--output", self.sandbox.folder / "out"]

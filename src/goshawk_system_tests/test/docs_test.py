@@ -62,9 +62,10 @@ class Pages(SystemTest):
         self.assertEqual(outcome.status, 0, str(outcome))
 
     def test_links_lead_somewhere(self):
-        for page in PAGES:
+        for page in [*PAGES, *SOURCE.glob("*.md"), *SOURCE.glob("docs/adr/*.md"),
+                     *SOURCE.glob("src/*/README.md")]:
             text = re.sub(r"(?m)^    .*$", "", page.read_text())  # code has no links
-            for target in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", text):
+            for target in re.findall(r"\]\(([^)#:\s]+)(?:#[^)]*)?\)", text):
                 with self.subTest(page=page.name, link=target):
                     self.assertTrue((page.parent / target).exists())
 

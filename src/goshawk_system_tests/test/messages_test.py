@@ -289,7 +289,7 @@ class Tools(StackTest):
         wanted = [word for p in parameters if p["at_run_time"]
                   for word in (p["name"], p["default"])]
         if wanted:
-            answer = self.ask("param", "set", stage, *wanted)[0]
+            answer = self.ask("param", "set", stage, *wanted, "--timeout", "60")[0]
             self.assertEqual(len(answer["parameters"]), len(wanted) // 2)
 
     def test_doctor_finds_nothing_wrong_with_a_flight(self):

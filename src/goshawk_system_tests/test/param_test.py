@@ -95,12 +95,12 @@ class LiveParameters(unittest.TestCase):
         before = self.plan()
         self.assertGreater(steepest_tilt(before), 1.2 * TILT_RAD)
         answer = self.param("set", "trajectory_optimizer", "max_tilt_rad", str(TILT_RAD),
-                            "refinement_passes", "1")
+                            "min_pieces", "12")
         self.assertEqual([(p["name"], p["old_value"], p["value"]) for p in answer["parameters"]],
-                         [("refinement_passes", "2", "1"), ("max_tilt_rad", "0", "0.1")])
+                         [("min_pieces", "8", "12"), ("max_tilt_rad", "0", "0.1")])
         after = self.plan()
         self.assertLess(steepest_tilt(after), TILT_RAD + 1e-6)
-        self.param("set", "trajectory_optimizer", "max_tilt_rad", "0", "refinement_passes", "2")
+        self.param("set", "trajectory_optimizer", "max_tilt_rad", "0", "min_pieces", "8")
         self.assertEqual(self.plan(), before, "the same config, the same bits")
 
     def test_2_what_is_wrong_is_a_sentence_and_changes_nothing(self):

@@ -111,6 +111,10 @@ GOSHAWK_INLINE double variance(const ActiveSetState& s, int k, const double* map
   return total;
 }
 
+GOSHAWK_INLINE double weight_of(double variance) {
+  return variance > 0.0 && variance < 1e300 ? 1.0 / __builtin_sqrt(variance) : 1.0;
+}
+
 void weigh(ActiveSetState& s) {
   for (int k = s.last - 1; k >= 1; --k) {
     JointFactor& f = s.factors[k];
@@ -128,7 +132,7 @@ void weigh(ActiveSetState& s) {
   for (int p = 0; p < s.point_count; ++p) {
     PricedPoint& point = s.points[p];
     const double map[6] = {point.map[0], point.map[1], point.map[2], 0.0, 0.0, 0.0};
-    point.weight = 1.0 / __builtin_sqrt(variance(s, point.joint, map));
+    point.weight = weight_of(variance(s, point.joint, map));
   }
   for (PricedSet& set : s.limits) {
     if (set.pieces == nullptr) continue;
@@ -137,8 +141,7 @@ void weigh(ActiveSetState& s) {
       for (int lane = 0; lane < 4; ++lane) {
         double map[6];
         for (int b = 0; b < 6; ++b) map[b] = l.map[b][lane];
-        const double v = variance(s, k, map);
-        l.weight[lane] = v > 0.0 ? 1.0 / __builtin_sqrt(v) : 0.0;
+        l.weight[lane] = weight_of(variance(s, k, map));
       }
     }
   }

@@ -69,7 +69,7 @@ GOSHAWK_INLINE Lanes* lanes_of(double* v) {
   return reinterpret_cast<Lanes*>(v);
 }
 
-// to = M from, and then to = M' of that
+// to = M from
 GOSHAWK_INLINE void multiply(const ActiveSetState& s, const double* from, double* to) {
   const int width = (s.count + 3) / 4;
   for (int i = 0; i < s.count; i += 4) {
@@ -84,6 +84,8 @@ GOSHAWK_INLINE void multiply(const ActiveSetState& s, const double* from, double
     lanes_of(to + i)[0] = sums(a[0], a[1], a[2], a[3]);
   }
 }
+
+// to = M' from
 GOSHAWK_INLINE void multiply_transposed(const ActiveSetState& s, const double* from, double* to) {
   const int width = (s.count + 3) / 4;
   for (int j = 0; j < width; ++j) lanes_of(to)[j] = Lanes{};
@@ -102,8 +104,7 @@ void measure_remainder(ActiveSetState& s) {
   Lanes total = {};
   for (int i = 3; i < 3 * s.last; ++i) total += magnitude(s.work[i]);
   s.remainder = sum(total);
-  // e' H^-1 e by way of two vectors would need another: a' H^-1 e is the same, as A H^-1 e = 0.
-  solve(s, 1);
+  solve(s, 1);  // with the remainder e, the slope is e' H^-1 e
   s.slope = sum(s.next.normal * point_at(s.work, s.next.joint, s.next.map));
   for (int i = 0; i < s.count; ++i) {
     const HalfSpace& a = s.active[i];

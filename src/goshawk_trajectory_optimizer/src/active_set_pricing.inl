@@ -165,5 +165,7 @@ void price(ActiveSetState& s) {
     take_limit(s, limit, limit_lane);
   }
   s.next.multiplier = 0.0;
-  s.violation = sum(s.next.normal * point_at(s.x, s.next.joint, s.next.map)) - s.next.bound;
+  // Summed in another order than it was found: it stays a violation.
+  const Lanes y = point_at(s.x, s.next.joint, s.next.map);
+  s.violation = larger(sum(s.next.normal * y) - s.next.bound, 1e-300);
 }

@@ -115,7 +115,7 @@ void ActiveSetSolver::iterate(const Settings& settings, Outcome& out) {
   kernels.weigh(s);
   kernels.place(s);
   kernels.measure(s);
-  bool placed = false;
+  bool placed = true;
   for (int refinements = 0, polishes = 0;;) {
     if (!placed) kernels.place(s);
     placed = false;
@@ -151,7 +151,10 @@ void ActiveSetSolver::iterate(const Settings& settings, Outcome& out) {
   out.gap = s.gap;
   out.dual_residual = s.dual_residual;
   out.primal_residual = std::max({0.0, s.face_violation, s.limit_violation});
-  if (s.gap <= settings.gap * std::abs(s.objective) + 1e-14) out.status = Status::solved;
+  const bool holds =
+      s.face_violation <= settings.feasibility && s.limit_violation <= settings.limit_feasibility;
+  const bool closed = s.gap <= settings.gap * std::abs(s.objective) + 1e-14;
+  if (holds && closed) out.status = Status::solved;
 }
 
 }  // namespace goshawk::trajectory_optimizer

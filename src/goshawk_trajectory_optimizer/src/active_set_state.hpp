@@ -29,7 +29,7 @@ struct PricedPoint {
 };
 
 /// The control points of one derivative of a piece, in units of the limit: |y| <= 1. A lane without
-/// a point has a map and a weight of zero.
+/// a point has a map of zero.
 struct PricedLimits {
   Lanes map[6];
   Lanes weight;

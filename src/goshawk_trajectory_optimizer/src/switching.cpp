@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kLook = 0.125;      // of a longest piece: how closely the curve is looked at
 constexpr int kMostLooks = 40;       // along the curve, from a switch
-constexpr double kLeastShare = 0.1;  // of a longest piece, for a polytope
+constexpr double kLeastStay = 0.1;  // of a longest piece, for a polytope
 
 /// The trajectory of a plan, by time.
 class Flight {
@@ -79,7 +79,7 @@ double move_switches(const Request& request, const Config& config, std::span<con
     switches_s[k] += move_s;
     gain_s += std::abs(gain * move_s);
   }
-  const double least_s = std::min(kLeastShare * cutter.longest_s, 0.5 * total_s / double(n));
+  const double least_s = std::min(kLeastStay * cutter.longest_s, 0.5 * total_s / double(n));
   for (std::size_t k = 1; k < n; ++k) {
     switches_s[k] = std::max(switches_s[k], switches_s[k - 1] + least_s);
   }

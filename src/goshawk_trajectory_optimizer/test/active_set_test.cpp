@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "goshawk/trajectory_optimizer/trajectory_optimizer.hpp"
 #include "random_instance.hpp"
 
 namespace goshawk::trajectory_optimizer {
@@ -188,6 +189,40 @@ TEST(ActiveSetSolver, ProvesThatTooShortDurationsAreInfeasible) {
     if (outcome.status == Status::infeasible) ++proved;
   }
   EXPECT_GE(proved, 90);
+}
+
+// Near the soonest flight nearly every Euclidean limit binds: that is the interior point's work.
+TEST(ActiveSetSolver, GivesUpSoonWhereManyBallsBind) {
+  Random random(16);
+  test::CorridorKind kind;
+  kind.segments = 6;
+  const Corridor corridor = test::random_corridor(random, kind);
+  const FlatState start = test::at_rest(corridor.waypoints_map.front());
+  const FlatState goal = test::at_rest(corridor.waypoints_map.back());
+  const Limits limits;
+  const auto soonest =
+      TrajectoryOptimizer::create({}).value().optimise(corridor, start, goal, limits);
+  ASSERT_TRUE(soonest);
+  Plan plan;
+  plan.joints.push_back(start);
+  for (const BezierPiece& piece : soonest->trajectory.pieces) {
+    plan.durations_s.push_back(1.001 * piece.duration_s);
+    plan.polytopes.push_back(piece.polytope);
+    plan.joints.push_back(start);
+    plan.joints.back().position = piece.control_points.col(5);
+  }
+  plan.reference_s = plan.duration_s();
+  SplineProblem problem;
+  Units units;
+  ASSERT_TRUE(
+      make_problem({corridor, start, goal, limits}, plan, false, 1.0, HUGE_VAL, problem, units));
+  ActiveSetSolver solver;
+  const auto outcome = solver.solve(problem, {.gap = 1e-7});
+  EXPECT_EQ(outcome.status, Status::iteration_limit);
+  EXPECT_FALSE(ActiveSetSolver::decided(outcome));
+  EXPECT_LE(outcome.iterations, 30 + 8 * problem.pieces());
+  SplineSolver interior;
+  EXPECT_EQ(interior.solve(problem, {.gap = 1e-7}).status, Status::solved);
 }
 
 TEST(ActiveSetSolver, AnswersRepeatBitForBitWhateverWentBefore) {

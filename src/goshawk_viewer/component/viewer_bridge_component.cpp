@@ -189,14 +189,15 @@ class ViewerBridgeComponent : public Component {
     topic.kept.push_back({stamp_ns, cdr});
   }
 
-  /// @return where the client's messages go, or nullptr: then the client was told why
+  /// @return where the client's messages go, or nullptr: a client that sends was told why
   RawPublisher* publisher_for(const ClientEvent& event) {
     const std::string name = event.topic.starts_with('/') ? event.topic.substr(1) : event.topic;
-    // Viewers offer more than is ever sent: Foxglove's 3D panel alone three topics.
+    // Viewers offer more than is ever sent, Foxglove's 3D panel alone three topics, and it counts
+    // as problems what it is told: only who sends is told.
     const bool sends = event.kind == ClientEvent::Kind::published;
-    const auto level = sends ? StatusLevel::error : StatusLevel::info;
     const auto refuse = [&](const std::string& why) {
-      server_->tell(event.client, level, event.topic.substr(0, 100) + ": " + why);
+      const auto sentence = event.topic.substr(0, 100) + ": " + why;
+      if (sends) server_->tell(event.client, StatusLevel::error, sentence);
       return nullptr;
     };
     if (!may_publish(name)) {

@@ -151,7 +151,8 @@ Goshawk.Page = class {
     this.plots = [
       new Goshawk.Plot(canvases[0], {title: 'speed', unit: 'm/s', limit: limits && limits.v_max}),
       new Goshawk.Plot(canvases[1], {title: 'acceleration', unit: 'm/s²', limit: limits && limits.a_max}),
-      new Goshawk.Plot(canvases[2], {title: 'tracking error', unit: 'mm', scale: 1000, absent: 'nothing flown yet'}),
+      new Goshawk.Plot(canvases[2], {title: 'tracking error', unit: 'mm', scale: 1000, least: 1,
+                                      absent: 'nothing flown yet'}),
     ];
   }
 

@@ -1,9 +1,10 @@
 // Plots against time on a canvas of their own: what was planned, what was flown, and the limit.
 'use strict';
 Goshawk.Plot = class {
-  // @param limit a dashed line, or null; absent: what an empty plot says
-  constructor(canvas, {title, unit, limit = null, scale = 1, absent = 'nothing to show yet'}) {
-    Object.assign(this, {canvas, title, unit, limit, scale, absent, series: [], zero: 0});
+  // @param limit a dashed line, or null; least: what the axis goes up to at least [unit], so that noise
+  // stays small; absent: what an empty plot says
+  constructor(canvas, {title, unit, limit = null, scale = 1, least = 0.1, absent = 'nothing to show yet'}) {
+    Object.assign(this, {canvas, title, unit, limit, scale, least, absent, series: [], zero: 0});
     this.set([0, 1], []);
   }
 
@@ -12,7 +13,7 @@ Goshawk.Plot = class {
     Object.assign(this, {span, series, zero});
     let top = this.limit === null ? 0 : this.limit * this.scale;
     for (const s of series) for (const [, v] of s.points) top = Math.max(top, v * this.scale);
-    this.top = 1.12 * (top || 1);
+    this.top = 1.12 * Math.max(top, this.least);
     this.empty = series.every(s => !s.points.length);
   }
 

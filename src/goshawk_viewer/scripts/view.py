@@ -27,7 +27,7 @@ import page_server
 
 DONE, NOT_DONE, WRONG_CALL = 0, 1, 2
 MARK = "@FLIGHT@"
-LARGEST_READ_FIRST = 64 << 20  # [byte] of a recording that is read before it is shown
+LARGEST_READ_FIRST = 64 << 20  # [byte] of a recording
 AROUND = (5.0, 4.0, 1.0)  # [m] what a live picture shows at least
 
 
@@ -92,7 +92,8 @@ def page_of_recording(prefix, recording, template=None):
     with tempfile.TemporaryDirectory(prefix="goshawk_view_") as folder:
         page = pathlib.Path(folder) / "flight.html"
         template = template or f"{prefix}/share/goshawk/viewer/page.html"
-        made = subprocess.run([f"{prefix}/lib/goshawk/recording_page", str(recording), template, str(page)],
+        made = subprocess.run([f"{prefix}/lib/goshawk/recording_page", str(recording),
+                               template, str(page)],
                               stdin=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
         if made.returncode != 0:
             code, _, sentence = made.stderr.strip().rpartition("\n")[2].partition(": ")

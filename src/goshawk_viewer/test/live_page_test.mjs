@@ -42,8 +42,11 @@ check(/no message/.test(closed[0]), `garbage: ${closed[0]}`);
 check(/messages a second|code 1006/.test(closed[1]), `a flood: ${closed[1]}`);
 const told = await page.evaluate(address => new Promise(resolve => {
   const socket = new WebSocket(address, ['foxglove.websocket.v1']);
-  socket.onopen = () => socket.send(JSON.stringify({op: 'advertise', channels: [
-    {id: 1, topic: 'command', encoding: 'json', schemaName: 'goshawk_msgs/msg/ThrustAttitude'}]}));
+  socket.onopen = () => {
+    socket.send(JSON.stringify({op: 'advertise', channels: [
+      {id: 1, topic: 'command', encoding: 'json', schemaName: 'goshawk_msgs/msg/ThrustAttitude'}]}));
+    socket.send(Uint8Array.of(1, 1, 0, 0, 0, 123, 125));  // {}
+  };
   socket.onmessage = event => {
     const message = typeof event.data === 'string' ? JSON.parse(event.data) : {};
     if (message.op === 'status') { resolve(message.message); socket.close(); }

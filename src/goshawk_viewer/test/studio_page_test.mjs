@@ -42,12 +42,12 @@ const {places} = await page.evaluate(async () => (await fetch('show.json')).json
 check(places.length > 3, `and a picture of where it flies: ${places.length} places`);
 if (kind === 'recording') {
   // A click into the time bar jumps there: to the flight's end. Before the recording is open there
-  // is no bar; a second click too early would begin the jump once more.
+  // is no bar; a second click too early would begin the jump once more, so each waits twice as long.
   const arrived = page.getByText('"arrived"').first();
   let found = false;
-  for (let k = 0; k < 6 && !found; ++k) {
+  for (let wait_ms = 15000; wait_ms < 3 * kPatience && !found; wait_ms *= 2) {
     await page.mouse.click(1424, 843);
-    found = await arrived.waitFor({timeout: 20000}).then(() => true, () => false);
+    found = await arrived.waitFor({timeout: wait_ms}).then(() => true, () => false);
   }
   check(found, 'a jump to the end finds that it arrived');
 } else {
