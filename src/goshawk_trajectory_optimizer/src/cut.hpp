@@ -20,11 +20,14 @@ struct Cutter {
 
   // The sooner the first piece from rest ends, the sooner the acceleration is there.
   static constexpr double kFromRest = 0.4;
+  // Of a flight of hours, whose pieces are longer then.
+  static constexpr double kMostPieces = 2000.0;
 
   /// @param at_moving_end first or last where that end moves
   static Cutter of(const Request& request, const Config& config, double total_s,
                    double at_moving_end) {
-    return {total_s, std::min(config.piece_duration_s, total_s / config.min_pieces),
+    const double longest_s = std::max(config.piece_duration_s, total_s / kMostPieces);
+    return {total_s, std::min(longest_s, total_s / config.min_pieces),
             is_moving(request.start) ? at_moving_end : kFromRest,
             is_moving(request.goal) ? at_moving_end : kFromRest};
   }

@@ -132,7 +132,7 @@ FlatState PolynomialSpline::sample(int segment, double t_s) const {
 Trajectory PolynomialSpline::to_trajectory(double longest_piece_s) const {
   Trajectory trajectory;
   for (int k = 0; k < segments(); ++k) {
-    const int pieces = std::clamp(int(std::ceil(duration_s(k) / longest_piece_s)), 1, 10000);
+    const int pieces = int(std::clamp(std::ceil(duration_s(k) / longest_piece_s), 1.0, 10000.0));
     const double T = duration_s(k) / pieces;
     for (int i = 0; i < pieces; ++i) {
       trajectory.pieces.push_back(

@@ -159,6 +159,19 @@ TEST(UnusualInput, FarFromTheOriginAndOnAFace) {
   EXPECT_TRUE(solution->certificate.holds());
 }
 
+// Bounded work and memory: longer pieces, not more of them.
+TEST(UnusualInput, FlightsOfDaysAndYears) {
+  for (const double v : {2.0, 1e-3}) {
+    const auto solution = optimise(test::straight_corridor(5e5), {.v_max_m_s = v, .a_max_m_s2 = v});
+    if (!solution) {
+      EXPECT_GT(solution.error().message.size(), 20u);
+      continue;
+    }
+    EXPECT_TRUE(solution->certificate.holds());
+    EXPECT_LT(solution->pieces, 3000);
+  }
+}
+
 TEST(UnusualInput, SlowAndFastVehicles) {
   for (const double v : {0.01, 0.1, 30.0, 1000.0}) {
     for (const double a : {0.01, 1.0, 100.0, 5000.0}) {
