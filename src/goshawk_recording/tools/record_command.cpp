@@ -1,5 +1,6 @@
 #include <signal.h>
 #include <sys/prctl.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -27,6 +28,7 @@ struct RecordCall {
   double duration_s = 0.0;  // 0: until Ctrl-C
   bool lock_step = false;
   bool stop_with_parent = false;
+  int parent = 0;  // its process id, where it is known
   bool json = false;
 };
 
@@ -66,6 +68,7 @@ void add_options(CLI::App& app, RecordCall& o) {
       "no message is lost; times are simulated");
   app.add_flag("--stop-with-parent", o.stop_with_parent,
                "end as on Ctrl-C when the process that started this one ends");
+  app.add_option("--parent", o.parent)->group("");
   app.add_flag("--json", o.json, "print one JSON object at the end (docs/cli.md)");
   app.footer(
       "Records until Ctrl-C. What is recorded is in the file within a second, and stays readable\n"
@@ -141,6 +144,8 @@ void join_all(const runtime::Context& context, const std::string& turns, Recorde
 int record(const RecordCall& o) {
   const Interruptible interruptible;
   if (o.stop_with_parent) prctl(PR_SET_PDEATHSIG, SIGINT);
+  // It may have ended before this process could ask to be told.
+  if (o.stop_with_parent && o.parent != 0 && getppid() != o.parent) raise(SIGINT);
   auto sink = create_file(o.file, o.overwrite);
   if (!sink) return report_failure("record", sink.error(), o.json, kNotDone);
   auto writer = Writer::create(*std::move(sink));

@@ -9,29 +9,29 @@ struct FaceSums {
   Lanes g[3] = {}, pull[3] = {}, w[6] = {};
 };
 
-GOSHAWK_INLINE void linearise_face(FaceLanes& f, const Lanes* y, FaceSums& to, Lanes& gap,
-                                   Lanes& proof, Lanes& worst, Lanes& outside) {
-  f.residual = f.nx * y[0] + f.ny * y[1] + f.nz * y[2] - f.offset + f.s;
+GOSHAWK_INLINE void linearise_face(Row& f, const FacePlanes& n, const Lanes* y, FaceSums& to,
+                                   Lanes& gap, Lanes& proof, Lanes& worst, Lanes& outside) {
+  f.residual = n.nx * y[0] + n.ny * y[1] + n.nz * y[2] - n.offset + f.s;
   f.inverse_s = 1.0 / f.s;
-  f.weight = f.z * f.inverse_s;
+  const Lanes weight = f.z * f.inverse_s;
   gap += f.s * f.z;
   proof += f.z * f.residual;
   worst = larger(worst, magnitude(f.residual));
   outside = larger(outside, f.residual - f.s);
-  const Lanes pull = f.weight * f.residual;
-  const Lanes wx = f.weight * f.nx, wy = f.weight * f.ny, wz = f.weight * f.nz;
-  to.g[0] += f.z * f.nx;
-  to.g[1] += f.z * f.ny;
-  to.g[2] += f.z * f.nz;
-  to.pull[0] += pull * f.nx;
-  to.pull[1] += pull * f.ny;
-  to.pull[2] += pull * f.nz;
-  to.w[0] += wx * f.nx;
-  to.w[1] += wx * f.ny;
-  to.w[2] += wx * f.nz;
-  to.w[3] += wy * f.ny;
-  to.w[4] += wy * f.nz;
-  to.w[5] += wz * f.nz;
+  const Lanes pull = weight * f.residual;
+  const Lanes wx = weight * n.nx, wy = weight * n.ny, wz = weight * n.nz;
+  to.g[0] += f.z * n.nx;
+  to.g[1] += f.z * n.ny;
+  to.g[2] += f.z * n.nz;
+  to.pull[0] += pull * n.nx;
+  to.pull[1] += pull * n.ny;
+  to.pull[2] += pull * n.nz;
+  to.w[0] += wx * n.nx;
+  to.w[1] += wx * n.ny;
+  to.w[2] += wx * n.nz;
+  to.w[3] += wy * n.ny;
+  to.w[4] += wy * n.nz;
+  to.w[5] += wz * n.nz;
 }
 
 // block += (m m') (x) W over the six blocks of a joint
@@ -54,8 +54,10 @@ void linearise_faces(SplineState& w) {
     const Lanes point = point_of(w.x + 3 * range.joint, range.map);
     const Lanes y[3] = {all(point[0]), all(point[1]), all(point[2])};
     FaceSums to;
-    for (int i = range.begin; i < range.end; ++i) {
-      linearise_face(w.faces[i], y, to, gap, proof, worst, outside);
+    const FacePlanes* n = w.planes + range.planes;
+    for (int i = range.begin; i < range.end; ++i, ++n) {
+      if (w.step != 0.0) take_step(w.faces[i], w.step);
+      linearise_face(w.faces[i], *n, y, to, gap, proof, worst, outside);
     }
     JointSums& joint = w.joints[range.joint];
     const Lanes g = sums(to.g[0], to.g[1], to.g[2], zero);
@@ -73,20 +75,33 @@ void linearise_faces(SplineState& w) {
   w.face_violation = largest(outside);
 }
 
-// ds and dz of the predictor. @return the largest of -ds/s and -dz/z
+void evaluate_faces(SplineState& w) {
+  for (int p = 0; p < w.face_points; ++p) {
+    const FaceRange& range = w.ranges[p];
+    const Lanes point = point_of(w.x + 3 * range.joint, range.map);
+    const FacePlanes* n = w.planes + range.planes;
+    for (int i = range.begin; i < range.end; ++i, ++n) {
+      w.faces[i].residual =
+          n->nx * point[0] + n->ny * point[1] + n->nz * point[2] - n->offset + 1.0;
+    }
+  }
+}
+
+// @return the largest of -ds/s and -dz/z of the predictor
 double predict_faces(SplineState& w) {
   Lanes worst = {}, product = {};
   for (int p = 0; p < w.face_points; ++p) {
     const FaceRange& range = w.ranges[p];
     const Lanes d = point_of(w.dx + 3 * range.joint, range.map);
     const Lanes dy[3] = {all(d[0]), all(d[1]), all(d[2])};
-    for (int i = range.begin; i < range.end; ++i) {
-      FaceLanes& f = w.faces[i];
-      f.ds = -f.residual - (f.nx * dy[0] + f.ny * dy[1] + f.nz * dy[2]);
-      f.dz = -f.z - f.weight * f.ds;
-      const Lanes ratio = f.ds * f.inverse_s;  // dz / z = -1 - ds / s
+    const FacePlanes* n = w.planes + range.planes;
+    for (int i = range.begin; i < range.end; ++i, ++n) {
+      Row& f = w.faces[i];
+      const Lanes ds = -f.residual - (n->nx * dy[0] + n->ny * dy[1] + n->nz * dy[2]);
+      const Lanes dz = -f.z - f.z * f.inverse_s * ds;
+      const Lanes ratio = ds * f.inverse_s;  // dz / z = -1 - ds / s
       worst = larger(worst, larger(-ratio, 1.0 + ratio));
-      f.target = f.ds * f.dz;
+      f.target = ds * dz;
       product += f.target;
     }
   }
@@ -100,13 +115,14 @@ void pull_faces(SplineState& w, double mu) {
   for (int p = 0; p < w.face_points; ++p) {
     const FaceRange& range = w.ranges[p];
     Lanes pull[3] = {};
-    for (int i = range.begin; i < range.end; ++i) {
-      FaceLanes& f = w.faces[i];
+    const FacePlanes* n = w.planes + range.planes;
+    for (int i = range.begin; i < range.end; ++i, ++n) {
+      Row& f = w.faces[i];
       f.target = (mu - w.trust * f.target) * f.inverse_s;
-      const Lanes c = f.target + f.weight * f.residual;
-      pull[0] += c * f.nx;
-      pull[1] += c * f.ny;
-      pull[2] += c * f.nz;
+      const Lanes c = f.target + f.z * f.inverse_s * f.residual;
+      pull[0] += c * n->nx;
+      pull[1] += c * n->ny;
+      pull[2] += c * n->nz;
     }
     const Lanes all_pull = sums(pull[0], pull[1], pull[2], zero);
     JointSums& joint = w.joints[range.joint];
@@ -114,26 +130,21 @@ void pull_faces(SplineState& w, double mu) {
   }
 }
 
+// Residuals become ds.
 double finish_faces(SplineState& w) {
   Lanes worst = {};
   for (int p = 0; p < w.face_points; ++p) {
     const FaceRange& range = w.ranges[p];
     const Lanes d = point_of(w.dx + 3 * range.joint, range.map);
     const Lanes dy[3] = {all(d[0]), all(d[1]), all(d[2])};
-    for (int i = range.begin; i < range.end; ++i) {
-      FaceLanes& f = w.faces[i];
-      f.ds = -f.residual - (f.nx * dy[0] + f.ny * dy[1] + f.nz * dy[2]);
-      f.dz = f.target - f.z - f.weight * f.ds;
-      worst = larger(worst, larger(-f.ds * f.inverse_s, -f.dz / f.z));
+    const FacePlanes* n = w.planes + range.planes;
+    for (int i = range.begin; i < range.end; ++i, ++n) {
+      Row& f = w.faces[i];
+      const Lanes ds = -f.residual - (n->nx * dy[0] + n->ny * dy[1] + n->nz * dy[2]);
+      const Lanes dz = f.target - f.z - f.z * f.inverse_s * ds;
+      worst = larger(worst, larger(-ds * f.inverse_s, -dz / f.z));
+      f.residual = ds;
     }
   }
   return largest(worst);
-}
-
-void apply_faces(SplineState& w, double step) {
-  const int end = w.face_points > 0 ? w.ranges[w.face_points - 1].end : 0;
-  for (int i = 0; i < end; ++i) {
-    w.faces[i].s += step * w.faces[i].ds;
-    w.faces[i].z += step * w.faces[i].dz;
-  }
 }

@@ -30,8 +30,14 @@ GOSHAWK_INLINE void expand(const JointSums& joint, const PieceSums* piece, int c
   }
 }
 
+// Columns of L below a panel's diagonal block: of use to the next panel alone.
+struct Below {
+  Lanes l[9][3];
+};
+
 // Left-looking: each column is finished in registers. @return false where not positive definite
-GOSHAWK_INLINE bool factor_panel(Panel& panel, const Panel* before, double& corner) {
+GOSHAWK_INLINE bool factor_panel(Panel& panel, Below& below, const Panel* before,
+                                 const Below& below_before, double& corner) {
   double* const inverse_d = at(panel.inverse_d);
 #pragma GCC unroll 9
   for (int c = 0; c < 9; ++c) {
@@ -40,7 +46,7 @@ GOSHAWK_INLINE bool factor_panel(Panel& panel, const Panel* before, double& corn
     if (before != nullptr) {
 #pragma GCC unroll 9
       for (int j = 0; j < 9; ++j) {
-        const Lanes factor = all(at(before->below[j])[c]);
+        const Lanes factor = all(at(below_before.l[j])[c]);
         for (int i = 0; i < 3; ++i) a[i] -= factor * before->u[j][3 + i];
       }
     }
@@ -56,7 +62,7 @@ GOSHAWK_INLINE bool factor_panel(Panel& panel, const Panel* before, double& corn
     inverse_d[c] = 1.0 / d;
     const Lanes inverse = all(inverse_d[c]);
     for (int i = 0; i < 6; ++i) panel.u[c][i] = a[i];
-    for (int i = 0; i < 3; ++i) panel.below[c][i] = a[3 + i] * inverse;
+    for (int i = 0; i < 3; ++i) below.l[c][i] = a[3 + i] * inverse;
     for (int j = c + 1; j < 9; ++j) at(panel.transposed[j])[c] = at(panel.u[c])[j] * inverse_d[c];
     corner -= a[2][1] * a[2][1] * inverse_d[c];
   }
@@ -67,8 +73,8 @@ GOSHAWK_INLINE bool factor_panel(Panel& panel, const Panel* before, double& corn
 GOSHAWK_INLINE void add_product(const Lanes* block, const Lanes& v, double factor, double* to) {
   const double* b = at(block);
   for (int i = 0; i < 3; ++i) {
-    to[i] += factor * (b[kSymmetric[i][0]] * v[0] + b[kSymmetric[i][1]] * v[1] +
-                       b[kSymmetric[i][2]] * v[2]);
+    to[i] += factor *
+             (b[kSymmetric[i][0]] * v[0] + b[kSymmetric[i][1]] * v[1] + b[kSymmetric[i][2]] * v[2]);
   }
 }
 
@@ -93,8 +99,7 @@ void fold_ends(SplineState& w) {
         for (int i = 0; i < 3; ++i) w.corner += 2.0 * w.goal_rate[r][i] * product[i];
         continue;
       }
-      add_product(w.pieces[0].block[3 * r + c], w.start_rate[c], 1.0,
-                  at(w.joints[1].border + r));
+      add_product(w.pieces[0].block[3 * r + c], w.start_rate[c], 1.0, at(w.joints[1].border + r));
       add_product(w.pieces[w.last - 1].block[3 * r + c], w.goal_rate[r], 1.0,
                   at(w.joints[w.last - 1].border + c));
     }
@@ -104,6 +109,7 @@ void fold_ends(SplineState& w) {
 bool factor(SplineState& w) {
   w.corner = w.scale ? w.hessian_eta : 1.0;
   if (w.scale && w.ends_move) fold_ends(w);
+  Below below[2];
   for (int k = 1; k < w.last; ++k) {
     Panel& panel = w.panels[k];
     const PieceSums* piece = k + 1 < w.last ? &w.pieces[k] : nullptr;
@@ -112,7 +118,8 @@ bool factor(SplineState& w) {
         expand(w.joints[k], piece, c, axis, at(panel.u[3 * c + axis]));
       }
     }
-    if (!factor_panel(panel, k > 1 ? &w.panels[k - 1] : nullptr, w.corner)) return false;
+    const Panel* before = k > 1 ? &w.panels[k - 1] : nullptr;
+    if (!factor_panel(panel, below[k % 2], before, below[1 - k % 2], w.corner)) return false;
   }
   return w.corner > 0.0 && w.corner < 1e300;
 }
@@ -146,7 +153,7 @@ GOSHAWK_INLINE void solve_up(const Panel& panel, Lanes* x, const Lanes* next) {
 #pragma GCC unroll 9
   for (int j = 8; j > 0; --j) {
     const Lanes factor = all(a[j / 4][j % 4]);
-    for (int i = 0; i < 3; ++i) a[i] -= factor * panel.transposed[j][i];
+    for (int i = 0; i < 2; ++i) a[i] -= factor * panel.transposed[j][i];
   }
   for (int i = 0; i < 3; ++i) x[i] = a[i];
 }

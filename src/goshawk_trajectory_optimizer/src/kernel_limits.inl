@@ -75,27 +75,28 @@ GOSHAWK_INLINE void linearise_limit(SplineState& w, const LimitSet& set, int k,
   LimitSums to;
   for (int r = 0; r < set.rows; ++r) {
     auto& row = l.row[r];
+    if (w.step != 0.0) take_step(row, w.step);
     const Lanes wy[3] = {set.weights[r][0] * l.y[0], set.weights[r][1] * l.y[1],
                          set.weights[r][2] * l.y[2]};
     const Lanes q = wy[0] * l.y[0] + wy[1] * l.y[1] + wy[2] * l.y[2];
     const Lanes over = Over ? q * l.inverse_e * l.inverse_e : Lanes{};
     row.residual = q * g - l.e + row.s;
     row.inverse_s = 1.0 / row.s;
-    row.weight = row.z * row.inverse_s;
+    const Lanes weight = row.z * row.inverse_s;
     row.slope_e = l.e1 * (-1.0 - over);
     total.gap += row.s * row.z;
     total.proof += row.z * row.residual;
     total.worst = larger(total.worst, magnitude(row.residual));
     total.outside = larger(total.outside, row.residual - row.s);
     total.dual_eta += row.z * row.slope_e;
-    total.pull_eta += row.weight * row.residual * row.slope_e;
-    total.hessian_eta += row.weight * row.slope_e * row.slope_e;
+    total.pull_eta += weight * row.residual * row.slope_e;
+    total.hessian_eta += weight * row.slope_e * row.slope_e;
     if (Over) total.hessian_eta += 2.0 * row.z * over * l.inverse_e * l.e1 * l.e1;
     const Lanes twice = 2.0 * g;
     Lanes G[3], wG[3];
     for (int c = 0; c < 3; ++c) {
       G[c] = twice * wy[c];
-      wG[c] = row.weight * G[c];
+      wG[c] = weight * G[c];
       to.g[c] += row.z * G[c];
       to.pull[c] += row.residual * wG[c];
       to.border[c] += wG[c] * row.slope_e;
@@ -123,6 +124,25 @@ void linearise_limits(SplineState& w, const LimitSet& set) {
   w.dual_eta += sum(total.dual_eta);
   w.pull_eta += sum(total.pull_eta);
   w.hessian_eta += sum(total.hessian_eta);
+}
+
+template <bool Over>
+void evaluate_limits(SplineState& w, const LimitSet& set) {
+  Lanes outside = {};
+  for (int k = 0; k < w.last; ++k) {
+    LimitLanes& l = set.lanes[k];
+    Lanes y[3];
+    points_of(l, w.x + 3 * k, y);
+    const Lanes e = l.e1 * w.eta + l.e0;
+    for (int r = 0; r < set.rows; ++r) {
+      Lanes q = set.weights[r][0] * y[0] * y[0] + set.weights[r][1] * y[1] * y[1] +
+                set.weights[r][2] * y[2] * y[2];
+      if (Over) q /= e;
+      outside = larger(outside, q - e);
+      l.row[r].residual = q - e + 1.0;
+    }
+  }
+  w.limit_violation = larger(w.limit_violation, largest(outside));
 }
 
 // The slope of a row along a direction, and half its bend (exact: rows are quadratic).
@@ -153,11 +173,11 @@ double predict_limits(SplineState& w, const LimitSet& set) {
     for (int r = 0; r < set.rows; ++r) {
       auto& row = l.row[r];
       const Along a = along<Over>(w, set, l, r, dy, de);
-      row.ds = -row.residual - a.slope;
-      row.dz = -row.z - row.weight * row.ds;
-      const Lanes ratio = row.ds * row.inverse_s;
+      const Lanes ds = -row.residual - a.slope;
+      const Lanes dz = -row.z - row.z * row.inverse_s * ds;
+      const Lanes ratio = ds * row.inverse_s;
       worst = larger(worst, larger(-ratio, 1.0 + ratio));
-      row.target = row.ds * row.dz;
+      row.target = ds * dz;
       product += row.target;
     }
   }
@@ -180,7 +200,7 @@ void pull_limits(SplineState& w, const LimitSet& set, double mu) {
       const Along a = along<Over>(w, set, l, r, dy, de);
       row.residual += w.reach * w.reach * a.bend;  // the predictor's second order
       row.target = (mu - w.trust * row.target) * row.inverse_s;
-      const Lanes c = row.target + row.weight * row.residual;
+      const Lanes c = row.target + row.z * row.inverse_s * row.residual;
       pull_eta += c * row.slope_e;
       for (int i = 0; i < 3; ++i) pull[i] += c * (2.0 * g * set.weights[r][i] * l.y[i]);
     }
@@ -202,20 +222,11 @@ double finish_limits(SplineState& w, const LimitSet& set) {
     for (int r = 0; r < set.rows; ++r) {
       auto& row = l.row[r];
       const Along a = along<Over>(w, set, l, r, dy, de);
-      row.ds = -row.residual - a.slope;
-      row.dz = row.target - row.z - row.weight * row.ds;
-      worst = larger(worst, larger(-row.ds * row.inverse_s, -row.dz / row.z));
+      const Lanes ds = -row.residual - a.slope;
+      const Lanes dz = row.target - row.z - row.z * row.inverse_s * ds;
+      worst = larger(worst, larger(-ds * row.inverse_s, -dz / row.z));
+      row.residual = ds;
     }
   }
   return largest(worst);
-}
-
-void apply_limits(SplineState& w, const LimitSet& set, double step) {
-  for (int k = 0; k < w.last; ++k) {
-    for (int r = 0; r < set.rows; ++r) {
-      auto& row = set.lanes[k].row[r];
-      row.s += step * row.ds;
-      row.z += step * row.dz;
-    }
-  }
 }

@@ -1,6 +1,14 @@
 // The iteration's passes over a SplineState. Included by one source for each instruction set,
 // inside an unnamed namespace: nothing here may be shared between them.
 
+// Slacks and multipliers follow x, when they are read anyway.
+GOSHAWK_INLINE void take_step(Row& row, double step) {
+  const Lanes ds = row.residual;
+  const Lanes dz = row.target - row.z - row.z * row.inverse_s * ds;
+  row.s += step * ds;
+  row.z += step * dz;
+}
+
 #include "kernel_faces.inl"
 #include "kernel_factor.inl"
 #include "kernel_limits.inl"
@@ -81,7 +89,33 @@ void linearise(SplineState& w) {
   linearise_limits<false>(w, w.velocity);
   linearise_limits<true>(w, w.acceleration);
   if (w.jerk_limit.lanes != nullptr) linearise_limits<true>(w, w.jerk_limit);
+  w.step = 0.0;
   measure_dual_residual(w);
+}
+
+// min cost + pull / 2 sum of |p_k - guess_k|^2, ends and eta given.
+bool smooth(SplineState& w, double pull) {
+  w.pull_eta = 0.0;
+  w.hessian_eta = 1.0;
+  start_sums(w);
+  for (int k = 0; k <= w.last; ++k) {
+    w.joints[k].block[0][0] += Lanes{pull, 0.0, 0.0, pull};
+    w.joints[k].block[0][1] += Lanes{0.0, pull, 0.0, 0.0};
+  }
+  if (!factor(w)) return false;
+  load_rhs(w);
+  solve(w);
+  for (int i = 0; i < 3 * (w.last + 1); ++i) w.x[i] += w.dx[i];
+  return true;
+}
+
+void evaluate(SplineState& w) {
+  w.limit_violation = 0.0;
+  start_sums(w);
+  evaluate_faces(w);
+  evaluate_limits<false>(w, w.velocity);
+  evaluate_limits<true>(w, w.acceleration);
+  if (w.jerk_limit.lanes != nullptr) evaluate_limits<true>(w, w.jerk_limit);
 }
 
 double predict(SplineState& w) {
@@ -121,8 +155,5 @@ double correct(SplineState& w, double mu) {
 void apply(SplineState& w, double step) {
   for (int i = 0; i < 3 * (w.last + 1); ++i) w.x[i] += step * w.dx[i];
   w.eta += step * w.deta;
-  apply_faces(w, step);
-  apply_limits(w, w.velocity, step);
-  apply_limits(w, w.acceleration, step);
-  if (w.jerk_limit.lanes != nullptr) apply_limits(w, w.jerk_limit, step);
+  w.step = step;
 }

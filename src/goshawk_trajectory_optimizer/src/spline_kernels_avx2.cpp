@@ -8,7 +8,8 @@ namespace {
 
 const SplineKernels& spline_kernels_avx2();
 const SplineKernels& spline_kernels_avx2() {
-  static constexpr SplineKernels kAvx2{linearise, factor, predict, correct, apply};
+  static constexpr SplineKernels kAvx2{smooth,  evaluate, linearise, factor,
+                                       predict, correct,  apply};
   return kAvx2;
 }
 

@@ -26,6 +26,7 @@ void SplineSolver::Memory::load(const SplineProblem& problem) {
   state.scale = problem.scale;
   state.time_weight = problem.scale ? problem.time_weight : 0.0;
   state.eta = 1.0;
+  state.step = 0.0;
   jerk_weight_ = problem.jerk_weight;
   constant_point_violated = false;
   load_joints(problem);
@@ -42,7 +43,7 @@ void SplineSolver::Memory::load_joints(const SplineProblem& problem) {
   rates_.assign(2, Triple{});
   joints_.resize(n);
   pieces_.resize(n);
-  panels_.assign(n, Panel{});
+  panels_.resize(n);  // what a factorisation leaves as it was stays zero
   jerk_.resize(n);
   set_joints(problem.joints);
   if (state.scale) {
@@ -67,28 +68,43 @@ void SplineSolver::Memory::load_joints(const SplineProblem& problem) {
 
 void SplineSolver::Memory::load_faces(const SplineProblem& problem) {
   ranges_.clear();
+  planes_.clear();
   faces_.clear();
+  std::span<const Face> last;
   for (const FacePoint& point : problem.face_points) {
-    FaceRange range{point.joint, int(faces_.size()), 0, {}};
+    const std::span faces(problem.faces.data() + point.begin, problem.faces.data() + point.end);
+    // The points of a piece mostly have the faces of one polytope.
+    if (!std::ranges::equal(faces, last)) load_planes(faces);
+    last = faces;
+    const auto count = (faces.size() + 3) / 4;
+    FaceRange range{point.joint,
+                    int(faces_.size()),
+                    int(faces_.size() + count),
+                    int(planes_.size() - count),
+                    {}};
     for (int i = 0; i < 3; ++i) range.map[i] = point.map[i];
-    for (int i = point.begin; i < point.end; i += 4) {
-      FaceLanes& lanes = faces_.emplace_back();
-      lanes.nx = lanes.ny = lanes.nz = Lanes{};
-      lanes.offset = Lanes{1.0, 1.0, 1.0, 1.0};  // fills up: no normal, always satisfied
-      for (int j = 0; j < 4 && i + j < point.end; ++j) {
-        const Face& face = problem.faces[std::size_t(i + j)];
-        lanes.nx[j] = face.normal[0];
-        lanes.ny[j] = face.normal[1];
-        lanes.nz[j] = face.normal[2];
-        lanes.offset[j] = face.offset;
-      }
-    }
-    range.end = int(faces_.size());
+    faces_.resize(faces_.size() + count);
     ranges_.push_back(range);
   }
   state.face_points = int(ranges_.size());
   state.ranges = ranges_.data();
+  state.planes = planes_.data();
   state.faces = faces_.data();
+}
+
+void SplineSolver::Memory::load_planes(std::span<const Face> faces) {
+  for (std::size_t i = 0; i < faces.size(); i += 4) {
+    FacePlanes& planes = planes_.emplace_back();
+    planes.nx = planes.ny = planes.nz = Lanes{};
+    planes.offset = Lanes{1.0, 1.0, 1.0, 1.0};  // fills up: no normal, always satisfied
+    for (std::size_t j = 0; j < 4 && i + j < faces.size(); ++j) {
+      const Face& face = faces[i + j];
+      planes.nx[j] = face.normal[0];
+      planes.ny[j] = face.normal[1];
+      planes.nz[j] = face.normal[2];
+      planes.offset[j] = face.offset;
+    }
+  }
 }
 
 namespace {
@@ -201,63 +217,43 @@ Joint SplineSolver::Memory::joint(int k) const {
 // The guess has corners, and accelerations many times too large. The smoothest spline near it,
 // min integral |p'''|^2 + pull |p_k - guess_k|^2, is one step of Newton's method away.
 void SplineSolver::Memory::smooth_guess() {
-  const SplineKernels& kernels = spline_kernels();
   const double time_weight = std::exchange(state.time_weight, 0.0);
   const bool ends_move = std::exchange(state.ends_move, false);
-  kernels.linearise(state);
-  const double pull = kPull * jerk_weight_;
-  for (JointSums& joint : joints_) {
-    joint.block[0][0] += Lanes{pull, 0.0, 0.0, pull};
-    joint.block[0][1] += Lanes{0.0, pull, 0.0, 0.0};
-  }
-  state.hessian_eta = 1.0;
-  if (kernels.factor(state)) {
-    kernels.predict(state);
-    kernels.apply(state, 1.0);
-  }
-  state.eta = 1.0;
+  spline_kernels().smooth(state, kPull * jerk_weight_);
   state.time_weight = time_weight;
   state.ends_move = ends_move;
 }
 
 void SplineSolver::Memory::start() {
-  // One pass with slacks of zero: its residuals are the constraints themselves.
-  const auto each_row = [&](auto&& visit) {
-    for (FaceLanes& f : faces_) visit(f);
-    const auto each_limit = [&](std::vector<LimitLanes>& limits, const LimitSet& set) {
-      for (LimitLanes& l : limits) {
-        for (int r = 0; r < set.rows; ++r) visit(l.row[r]);
-      }
-    };
-    each_limit(velocity_, state.velocity);
-    each_limit(acceleration_, state.acceleration);
-    each_limit(jerk_limit_, state.jerk_limit);
-  };
-  double rows = 0.0;
-  each_row([&](auto& row) {
-    row.s = Lanes{1.0, 1.0, 1.0, 1.0};
-    row.z = Lanes{};
-    rows += 4.0;
-  });
   smooth_guess();
-  each_row([](auto& row) {
-    row.s = Lanes{1.0, 1.0, 1.0, 1.0};
-    row.z = Lanes{};
-  });
-  spline_kernels().linearise(state);
+  const SplineKernels& kernels = spline_kernels();
+  kernels.evaluate(state);
   if (state.scale && !state.ends_move && state.limit_violation > kFarOff) {
     state.eta = 1.0 + state.limit_violation;
-    spline_kernels().linearise(state);
+    kernels.evaluate(state);
   }
-  state.degree = rows;
-  const double mu =
-      (state.scale ? kFirstGap : kFirstGapFixed) * std::max(state.objective, 1e-6) / rows;
-  each_row([&](auto& row) {
+  std::size_t rows = faces_.size();
+  for (const LimitSet* set : {&state.velocity, &state.acceleration, &state.jerk_limit}) {
+    if (set->lanes != nullptr) rows += std::size_t(state.last * set->rows);
+  }
+  state.degree = 4.0 * double(rows);
+  const double first_gap = state.scale ? kFirstGap : kFirstGapFixed;
+  const double mu = first_gap * std::max(state.objective, 1e-6) / state.degree;
+  const auto begin = [&](Row& row) {
     for (int j = 0; j < 4; ++j) {
       row.s[j] = std::max(1.0 - row.residual[j], kStartMargin);
       row.z[j] = mu / row.s[j];
     }
-  });
+  };
+  for (Row& row : faces_) begin(row);
+  const auto begin_limits = [&](std::vector<LimitLanes>& limits, const LimitSet& set) {
+    for (LimitLanes& l : limits) {
+      for (int r = 0; r < set.rows; ++r) begin(l.row[r]);
+    }
+  };
+  begin_limits(velocity_, state.velocity);
+  begin_limits(acceleration_, state.acceleration);
+  begin_limits(jerk_limit_, state.jerk_limit);
 }
 
 }  // namespace goshawk::trajectory_optimizer

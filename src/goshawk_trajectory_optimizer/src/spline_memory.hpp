@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "goshawk/trajectory_optimizer/spline_solver.hpp"
@@ -23,6 +24,7 @@ struct SplineSolver::Memory {
   void smooth_guess();
   void load_joints(const SplineProblem& problem);
   void load_faces(const SplineProblem& problem);
+  void load_planes(std::span<const Face> faces);
   void load_limits(const SplineProblem& problem);
   void load_limit(const SplineProblem& problem, int k, int order, LimitLanes& to);
   bool is_row(const PointMap& map, int k, double limit, const LimitSet& set);
@@ -37,7 +39,8 @@ struct SplineSolver::Memory {
   std::vector<Triple> x_, dx_, rhs_, rates_;
   std::vector<Jerk> jerk_;
   std::vector<FaceRange> ranges_;
-  std::vector<FaceLanes> faces_;
+  std::vector<FacePlanes> planes_;
+  std::vector<Row> faces_;
   std::vector<LimitLanes> velocity_, acceleration_, jerk_limit_;
   std::vector<JointSums> joints_;
   std::vector<PieceSums> pieces_;

@@ -6,12 +6,13 @@ namespace {
 
 // A control point is y = sum_b m_b x_b, and m_b a power of the duration T: of its logarithm it is
 // a linear function, sum_b power_b m_b x_b.
-double faces_slope(const FaceRange& range, const FaceLanes* faces, const Lanes* x) {
+double faces_slope(const SplineState& s, const FaceRange& range) {
+  const Lanes* x = s.x + 3 * range.joint;
   const Lanes dy = range.map[1] * x[1] + 2.0 * range.map[2] * x[2];
   Lanes slope = {};
-  for (int i = range.begin; i < range.end; ++i) {
-    const FaceLanes& f = faces[i];
-    slope += f.z * (f.nx * dy[0] + f.ny * dy[1] + f.nz * dy[2]);
+  const FacePlanes* n = s.planes + range.planes;
+  for (int i = range.begin; i < range.end; ++i, ++n) {
+    slope += s.faces[i].z * (n->nx * dy[0] + n->ny * dy[1] + n->nz * dy[2]);
   }
   return slope[0] + slope[1] + slope[2] + slope[3];
 }
@@ -58,7 +59,7 @@ void SplineSolver::time_slopes(std::vector<double>& slopes) const {
     // second's.
     const int piece = range.map[1] > 0.0 ? range.joint : range.joint - 1;
     if (range.map[1] == 0.0) continue;
-    slopes[std::size_t(piece)] += faces_slope(range, s.faces, s.x + 3 * range.joint);
+    slopes[std::size_t(piece)] += faces_slope(s, range);
   }
   for (int k = 0; k < s.last; ++k) {
     const Lanes* x = s.x + 3 * k;

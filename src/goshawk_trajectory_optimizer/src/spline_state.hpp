@@ -6,19 +6,24 @@
 // compiled for several instruction sets and must not instantiate anything that others share.
 namespace goshawk::trajectory_optimizer {
 
-/// Four faces of one face point. A face that only fills up the four has no normal.
-struct FaceLanes {
+/// Four faces, n.y <= offset. One that only fills up the four has no normal.
+struct FacePlanes {
   Lanes nx, ny, nz, offset;
-  Lanes s, z;               // slack and multiplier
-  Lanes residual;           // n.y - offset + s
-  Lanes inverse_s, weight;  // 1 / s, z / s
-  Lanes ds, dz;
-  Lanes target;  // what s z is to become
 };
 
-/// A control point y = p + beta v + gamma a of one joint and its faces.
+/// What belongs to four constraints; weight (z / s) and dz are computed where they are needed: a
+/// long trajectory has to fit into the processor's cache.
+struct Row {
+  Lanes s, z;      // slack and multiplier
+  Lanes residual;  // of the constraint and s; after the corrector ds
+  Lanes inverse_s;
+  Lanes target;  // what s z is to become: ds dz of the predictor, then what dz is made of
+};
+
+/// A control point y = p + beta v + gamma a of one joint, rows begin .. end - 1 and their planes,
+/// from `planes` on. Points with the same faces share them.
 struct FaceRange {
-  int joint, begin, end;
+  int joint, begin, end, planes;
   double map[3];  // 1, beta, gamma
 };
 
@@ -33,8 +38,7 @@ struct LimitLanes {
   Lanes e1, e0;
   Lanes y[3];
   Lanes e, inverse_e;
-  struct Row {
-    Lanes s, z, residual, inverse_s, weight, ds, dz, target;
+  struct LimitRow : Row {
     Lanes slope_e;  // of the constraint, by eta
   } row[kMostRows];
 };
@@ -65,8 +69,7 @@ struct PieceSums {
 /// 12..20 the block below, row 21 the border again (what is below then has the next panel's form).
 struct Panel {
   Lanes u[9][6];           // columns of L D
-  Lanes below[9][3];       // columns of L, rows 12..23
-  Lanes transposed[9][3];  // row j of L's diagonal block
+  Lanes transposed[9][2];  // row j of L's diagonal block, left of the diagonal
   Lanes inverse_d[3];
 };
 
@@ -87,7 +90,8 @@ struct SplineState {
   const Lanes* goal_rate = nullptr;
   const double* jerk = nullptr;  // 36 a piece
   FaceRange* ranges = nullptr;
-  FaceLanes* faces = nullptr;
+  const FacePlanes* planes = nullptr;
+  Row* faces = nullptr;
   LimitSet velocity, acceleration, jerk_limit;
   JointSums* joints = nullptr;
   PieceSums* pieces = nullptr;
@@ -95,6 +99,7 @@ struct SplineState {
   Lanes* rhs = nullptr;  // 3 a joint, packed: nine values
 
   double eta = 1.0, deta = 0.0;
+  double step = 0.0;  // that x has taken already and the rows take with the next pass
   double dual_eta = 0.0, pull_eta = 0.0, hessian_eta = 0.0, corner = 0.0;
   double objective = 0.0, gap = 0.0, primal_residual = 0.0, dual_residual = 0.0;
   double multiplier_residual = 0.0;  // sum of |G'z| over the unknowns
@@ -107,7 +112,9 @@ struct SplineState {
 
 /// The steps of an iteration, each a pass over the state.
 struct SplineKernels {
-  void (*linearise)(SplineState&);             // residuals and the reduced Hessian
+  bool (*smooth)(SplineState&, double pull);   // one Newton step of the cost and the guess' pull
+  void (*evaluate)(SplineState&);              // residuals alone, of slacks of 1
+  void (*linearise)(SplineState&);             // takes the step; residuals and reduced Hessian
   bool (*factor)(SplineState&);                // false: not positive definite
   double (*predict)(SplineState&);             // the step to the boundary
   double (*correct)(SplineState&, double mu);  // likewise; ds and dz are final

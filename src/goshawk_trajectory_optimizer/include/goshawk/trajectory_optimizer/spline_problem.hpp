@@ -11,6 +11,8 @@ namespace goshawk::trajectory_optimizer {
 struct Face {
   Vec3 normal;
   double offset = 0.0;
+
+  bool operator==(const Face&) const = default;
 };
 
 /// A control point of a piece, a map of one joint alone, with the faces it must stay behind:
