@@ -14,6 +14,9 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
 
 MARKERS = "os^Dv<>ph*"
+# Okabe and Ito's colours, which every kind of colour vision tells apart, the palest one last.
+COLORS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#000000", "#f0e442"]
+matplotlib.rcParams["axes.prop_cycle"] = matplotlib.cycler(color=COLORS)
 MOST_MARKED = 60  # points of a line; more are a curve
 
 
@@ -21,6 +24,11 @@ def rows_of(report, plot):
     return [r for r in report[plot.get("from", "rows")]
             if all(r.get(k) == v for k, v in plot["where"].items())
             and r.get(plot["x"]) is not None and r.get(plot["y"]) is not None]
+
+
+def printed(label):
+    """Units as they are printed: reports write them in ASCII."""
+    return label.replace("^2", "²").replace("^3", "³").replace("[us]", "[µs]")
 
 
 def draw(report, plot, folder):
@@ -34,6 +42,8 @@ def draw(report, plot, folder):
         xs, ys = [r[plot["x"]] for r in mine], [r[plot["y"]] for r in mine]
         curve = len(mine) > MOST_MARKED and not plot["points_only"]
         style = {"marker": None if curve else MARKERS[index % len(MARKERS)], "label": name or None}
+        if name == "limit":
+            style.update(color="black", dashes=(5, 3))
         axes.plot(xs, ys, linestyle="none" if plot["points_only"] else "-", **style)
     named = any(isinstance(r[plot["x"]], str) for r in rows)
     if named:
@@ -49,7 +59,8 @@ def draw(report, plot, folder):
     else:
         low, high = axes.get_ylim()
         axes.set_ylim(min(0, low), high + 0.03 * (high - min(0, low)))
-    axes.set(title=plot["title"], xlabel=plot["x_label"], ylabel=plot["y_label"])
+    axes.set(title=plot["title"], xlabel=printed(plot["x_label"]),
+             ylabel=printed(plot["y_label"]))
     axes.grid(True, which="both", alpha=0.3)
     if len(series) > 1:
         # Beside the picture where points may lie anywhere.

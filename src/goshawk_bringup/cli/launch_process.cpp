@@ -69,7 +69,7 @@ Result<int> private_domain() {
 
 Result<LaunchProcess> LaunchProcess::start(const Arguments& launch_arguments, int domain,
                                            const std::string& output_file) {
-  Arguments verb{"launch", "--stop-with-parent"};
+  Arguments verb{"launch", "--stop-with-parent", "--parent", std::to_string(getpid())};
   verb.insert(verb.end(), launch_arguments.begin(), launch_arguments.end());
   return start_verb(verb, domain, output_file);
 }

@@ -1,5 +1,7 @@
 #include "recorder_process.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <set>
 
@@ -7,8 +9,9 @@ namespace goshawk::cli {
 
 Result<LaunchProcess> start_recorder(const std::string& folder, int domain) {
   return LaunchProcess::start_verb(
-      {"record", "--stop-with-parent", "--overwrite", "-o", folder + "/flight.mcap"}, domain,
-      folder + "/logs/record.log");
+      {"record", "--stop-with-parent", "--parent", std::to_string(getpid()), "--overwrite", "-o",
+       folder + "/flight.mcap"},
+      domain, folder + "/logs/record.log");
 }
 
 bool hears_planning(const runtime::Context& context, pid_t recorder) {

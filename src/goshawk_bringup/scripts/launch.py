@@ -181,10 +181,14 @@ def supervisor_configuration(plan, logs, socket):
     return "\n".join(lines) + "\n"
 
 
-def stop_with_parent():
-    """SIGTERM for this process when its parent ends, however it ends."""
+def stop_with_parent(parent=0):
+    """SIGTERM for this process when its parent ends, however it ends.
+
+    @param parent its process id: it may have ended before this process could ask for that"""
     pr_set_pdeathsig = 1
     ctypes.CDLL(None).prctl(pr_set_pdeathsig, signal.SIGTERM)
+    if parent and os.getppid() != parent:
+        os.kill(os.getpid(), signal.SIGTERM)
 
 
 class Launch:
@@ -213,10 +217,11 @@ class Launch:
         configuration = os.path.join(self.folder, "supervisord.conf")
         with open(configuration, "w", encoding="utf-8") as file:
             file.write(supervisor_configuration(self.plan, self.logs, self.socket))
+        own_pid = os.getpid()
         supervisor = subprocess.Popen(
             ["/usr/bin/python3", "/usr/bin/supervisord", "-n", "-c", configuration],
             stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-            start_new_session=True, preexec_fn=stop_with_parent)
+            start_new_session=True, preexec_fn=lambda: stop_with_parent(own_pid))
         self.say("starting", text=f"starting {', '.join(self.plan.programs)}; logs in {self.logs}")
         status = DONE
         try:
@@ -326,6 +331,7 @@ def main():
                         help="print the names of the installed launch files, and end")
     parser.add_argument("--stop-with-parent", action="store_true",
                         help="stop as on Ctrl-C when the process that started this one ends")
+    parser.add_argument("--parent", type=int, default=0, help=argparse.SUPPRESS)
     options = parser.parse_args(arguments)
     path = options.file
     if not os.path.isfile(path) and "/" not in path:
@@ -349,7 +355,7 @@ def main():
     signal.signal(signal.SIGINT, stop)
     signal.signal(signal.SIGTERM, stop)
     if options.stop_with_parent:
-        stop_with_parent()
+        stop_with_parent(options.parent)
     return launch.run()
 
 

@@ -1,9 +1,12 @@
 #include <signal.h>
 #include <sys/prctl.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <ctime>
+#include <thread>
 
 #include "goshawk/recording/commands.hpp"
 #include "recorder.hpp"
@@ -13,6 +16,8 @@ namespace goshawk::recording {
 namespace {
 
 constexpr double kLookPeriod_s = 0.05;  // for new topics
+constexpr double kQuiet_s = 1.0;        // nothing new for so long: all that is there has been found
+constexpr double kNothing_s = 30.0;     // the world does not wait longer for topics that never come
 constexpr double kFlushPeriod_s = 1.0;  // what kill -9 may cost
 
 struct RecordCall {
@@ -23,6 +28,7 @@ struct RecordCall {
   double duration_s = 0.0;  // 0: until Ctrl-C
   bool lock_step = false;
   bool stop_with_parent = false;
+  int parent = 0;  // its process id, where it is known
   bool json = false;
 };
 
@@ -62,6 +68,7 @@ void add_options(CLI::App& app, RecordCall& o) {
       "no message is lost; times are simulated");
   app.add_flag("--stop-with-parent", o.stop_with_parent,
                "end as on Ctrl-C when the process that started this one ends");
+  app.add_option("--parent", o.parent)->group("");
   app.add_flag("--json", o.json, "print one JSON object at the end (docs/cli.md)");
   app.footer(
       "Records until Ctrl-C. What is recorded is in the file within a second, and stays readable\n"
@@ -114,9 +121,31 @@ void print_end(const Recorder& recorder, const RecordCall& o, double seconds) {
   }
 }
 
+// In lock step the world stands still until this node has answered its first turn: not before
+// every topic that is there has been joined.
+void join_all(const runtime::Context& context, const std::string& turns, Recorder& recorder,
+              double most_s) {
+  const Stopwatch whole;
+  Stopwatch led, quiet;
+  std::size_t known = 0;
+  while (!Interruptible::interrupted() && (most_s <= 0.0 || whole.seconds() < most_s)) {
+    recorder.join();
+    const bool leader_is_there = std::ranges::any_of(
+        context.endpoints(), [&](const auto& e) { return e.writer && e.topic == turns; });
+    const std::size_t topics = recorder.received().size();
+    if (!leader_is_there) led = {};
+    if (!leader_is_there || topics != known) quiet = {};
+    known = topics;
+    if (quiet.seconds() > kQuiet_s && (topics > 0 || led.seconds() > kNothing_s)) return;
+    std::this_thread::sleep_for(std::chrono::duration<double>(kLookPeriod_s));
+  }
+}
+
 int record(const RecordCall& o) {
   const Interruptible interruptible;
   if (o.stop_with_parent) prctl(PR_SET_PDEATHSIG, SIGINT);
+  // It may have ended before this process could ask to be told.
+  if (o.stop_with_parent && o.parent != 0 && getppid() != o.parent) raise(SIGINT);
   auto sink = create_file(o.file, o.overwrite);
   if (!sink) return report_failure("record", sink.error(), o.json, kNotDone);
   auto writer = Writer::create(*std::move(sink));
@@ -128,6 +157,7 @@ int record(const RecordCall& o) {
   Recorder recorder(**context, node, *std::move(writer), {o.topics, o.exclude});
   say("record", "recording to " + o.file + (o.duration_s > 0.0 ? "" : ", until Ctrl-C"));
   const Stopwatch whole;
+  if (o.lock_step) join_all(**context, node.full_name() + "/turn", recorder, o.duration_s);
   Stopwatch looked, flushed;
   recorder.join();
   while (recorder.state() && !Interruptible::interrupted() &&

@@ -1,6 +1,6 @@
 #include "goshawk/runtime/message_type.hpp"
 
-#include <cstring>
+#include <algorithm>
 
 #include "message_type_impl.hpp"
 
@@ -21,7 +21,7 @@ class RawType : public eprosima::fastdds::dds::TopicDataType {
   bool serialize(void* data, Payload* payload) override {
     const auto& bytes = *static_cast<const Bytes*>(data);
     if (bytes.size() > payload->max_size) return false;
-    std::memcpy(payload->data, bytes.data(), bytes.size());
+    std::ranges::copy(bytes, payload->data);
     payload->length = unsigned(bytes.size());
     payload->encapsulation = !bytes.empty() && bytes.size() > 1 && bytes[1] == 1 ? CDR_LE : CDR_BE;
     return true;
@@ -65,7 +65,7 @@ Bytes encode(const MessageType& type, const void* message) {
 bool decode(const MessageType& type, const Bytes& bytes, void* message) {
   auto& support = const_cast<eprosima::fastdds::dds::TypeSupport&>(type.impl().support);
   Payload payload(unsigned(bytes.size()));
-  std::memcpy(payload.data, bytes.data(), bytes.size());
+  std::ranges::copy(bytes, payload.data);
   payload.length = unsigned(bytes.size());
   return support.deserialize(&payload, message);
 }

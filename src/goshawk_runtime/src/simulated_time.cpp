@@ -105,8 +105,8 @@ void Node::lead_lock_step(const LockStep& lock_step) {
   const std::string prefix = args_.node_namespace == "/" ? "" : args_.node_namespace;
   for (const auto& name : lock_step.followers) {
     time.followers.push_back(name.starts_with('/') ? name : prefix + "/" + name);
-    time.turns_of.push_back(
-        advertise<Turn>(turn_topic(time.followers.back()), Qos::reliable_last()));
+    // Followers ask for no old turns; a recorder that comes late has those from the roll call on.
+    time.turns_of.push_back(advertise<Turn>(turn_topic(time.followers.back()), Qos::latched(100)));
   }
   time.on = true;
   time.now_ns = kFirst_ns;

@@ -172,6 +172,14 @@ class LaunchEnds(SystemTest):
         self.assertTrue(gone, [harness.command_of(p)
                                for p in harness.processes_of(self.sandbox.token)])
 
+    def test_what_begins_after_its_parent_has_gone_ends(self):
+        """A parent can end before its child could ask to be told of that."""
+        other = str(os.getppid())
+        for arguments in (["launch", "flight"], ["record", "-o", "gone.mcap"]):
+            with self.subTest(verb=arguments[0]):
+                outcome = self.sandbox.goshawk(*arguments, "--stop-with-parent", "--parent", other)
+                self.assert_civil(outcome)
+
     def test_an_interrupted_fly_stops_everything(self):
         fly = self.sandbox.start(GOSHAWK, "fly", "--json", "--output",
                                  self.sandbox.folder / "out")

@@ -42,7 +42,7 @@ def studio_environment(test):
 
 
 def look(test, script, *arguments):
-    outcome = test.sandbox.call("node", SCRIPTS / script, *arguments, timeout_s=150,
+    outcome = test.sandbox.call("node", SCRIPTS / script, *arguments, timeout_s=600,
                                 env=browser_environment(test))
     test.assertEqual(outcome.status, 0, str(outcome))
     note(outcome.out.strip().replace("\n", "\n    "))

@@ -50,7 +50,9 @@ Goshawk.FlightPage = class extends Goshawk.Page {
     view.frame(this.framed());
     for (const [name, have] of [['grown', data.grown], ['flown', this.track.length],
                                 ['vehicle', this.track.length || this.legs.length]]) {
-      if (!have) $('layer-' + name).parentElement.hidden = true;
+      if (have) continue;
+      $('layer-' + name).parentElement.hidden = true;
+      view.layers[name].visible = false;
     }
   }
 

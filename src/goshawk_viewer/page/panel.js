@@ -33,7 +33,9 @@ Goshawk.Page = class {
     }
     $('no-webgl').hidden = false;
     $('view').hidden = true;
-    for (const id of ['cut-row', 'follow', 'home', 'layers', 'speed-scale']) $(id).hidden = true;
+    for (const id of ['cut-row', 'follow', 'home', 'layers', 'speed-scale', 'height-row', 'goal']) {
+      $(id).hidden = true;
+    }
     return null;
   }
 

@@ -58,8 +58,41 @@ async function lookAtIt() {
   await slide(0.45);
   await page.waitForTimeout(300);
   if (screenshot) await page.screenshot({path: screenshot});
+  await keys(page);
+  await wholeFlight(page, 'wide');
+  const narrow = await open(browser, url, {width: 390, height: 844});
+  check(await narrow.page.isHidden('#folded'), 'a narrow window begins with the picture alone');
+  await wholeFlight(narrow.page, 'narrow');
+  await narrow.page.click('#fold');
+  check(await narrow.page.isVisible('#theme'), 'and has the panel when it is wanted');
+  complaints.push(...narrow.complaints);
   check(complaints.length === 0, `no complaints: ${complaints}`);
   await browser.close();
+}
+
+// The first view shows all of the flight, beside the panel or below its header.
+async function wholeFlight(page, width) {
+  const out = await page.evaluate(() => {
+    document.getElementById('home').click();
+    const view = goshawk.view, r = view.canvas.getBoundingClientRect(), left = view.panelWidth();
+    view.camera.updateMatrixWorld();
+    return goshawk.framed().map(p => view.project(p))
+        .filter(([x, y]) => x < left || x > r.right || y < r.top || y > r.bottom).length;
+  });
+  check(out === 0, `all of the flight is seen in a ${width} window: ${out} places are not`);
+}
+
+async function keys(page) {
+  await page.focus('#time');
+  const now = () => page.evaluate(() => goshawk.now - goshawk.begin);
+  await page.keyboard.press('Home');
+  const begin = await now();
+  await page.keyboard.press('Shift+ArrowRight');
+  check(begin === 0 && Math.abs(await now() - 1) < 1e-6, 'keys move through time');
+  const eye = () => page.evaluate(() => goshawk.view.camera.position.toArray());
+  const before = await eye();
+  await page.keyboard.press('d');
+  check(Math.hypot(...(await eye()).map((c, k) => c - before[k])) > 0.1, 'and turn the picture');
 }
 
 async function withoutWebGL() {
