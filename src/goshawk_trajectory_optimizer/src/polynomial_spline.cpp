@@ -89,6 +89,13 @@ Result<PolynomialSpline> PolynomialSpline::through(std::span<const Vec3> waypoin
                                               std::to_string(durations.size()) +
                                               " durations: n + 1 and n are needed");
   }
+  // One dense system, as its authors solve it: its time grows with the cube.
+  constexpr std::size_t kMostWaypoints = 200;
+  if (waypoints.size() > kMostWaypoints) {
+    return fail(ErrorCode::invalid_input, std::to_string(waypoints.size()) +
+                                              " waypoints are more than one polynomial system is "
+                                              "solved for (200): use method scale");
+  }
   for (const double T : durations) {
     if (!(std::isfinite(T) && T > 0.0)) {
       return fail(ErrorCode::invalid_input, "a duration of " + std::to_string(T) + " s");
