@@ -30,9 +30,9 @@ Status check_column(const VoxelGrid& grid, Index3 top, int lowest) {
                   "the space below, at " + to_text(grid.geometry.center(i)) + ", was not measured");
     }
     if (grid.occupied.get(i)) {
-      return fail(ErrorCode::goal_occupied,
-                  "something is below, at " + to_text(grid.geometry.center(i)) +
-                      " or within " + metres(grid.inflation_m) + " of there");
+      return fail(ErrorCode::goal_occupied, "something is below, at " +
+                                                to_text(grid.geometry.center(i)) + " or within " +
+                                                metres(grid.inflation_m) + " of there");
     }
   }
   return success();

@@ -115,7 +115,8 @@ TEST(WayDown, AgreesWithDistancesInRandomRooms) {
   int free = 0;
   for (int trial = 0; trial < 400; ++trial) {
     BitGrid raw(Index3{16, 16, 20}, true);
-    for (int k = 0; k < 4; ++k) raw.set({random.below(16), random.below(16), random.below(20)}, true);
+    for (int k = 0; k < 4; ++k)
+      raw.set({random.below(16), random.below(16), random.below(20)}, true);
     const VoxelGrid grid = grid_of(raw, 0.4);
     const Index3 from{random.below(16), random.below(16), 19};
     const int ground = random.below(4);

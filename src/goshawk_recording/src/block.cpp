@@ -69,8 +69,9 @@ Result<Bytes> File::read(std::uint64_t at, std::uint64_t size) const {
         pread(descriptor_, bytes.data() + done, bytes.size() - done, off_t(at + done));
     if (got < 0 && errno == EINTR) continue;
     if (got <= 0) {
-      return fail(ErrorCode::io_failed, path_ + " cannot be read: " +
-                                            (got == 0 ? "it became shorter" : std::strerror(errno)));
+      return fail(
+          ErrorCode::io_failed,
+          path_ + " cannot be read: " + (got == 0 ? "it became shorter" : std::strerror(errno)));
     }
     done += std::size_t(got);
   }
@@ -93,8 +94,8 @@ std::optional<Block> chunk_of(View head, std::uint64_t offset, std::uint64_t siz
 
 Result<Bytes> load(const File& file, const Block& block) {
   if (!block.compression.empty() && block.compression != "zstd") {
-    return damaged(block, "its compression '" + block.compression +
-                              "' is not known here: zstd and none are");
+    return damaged(
+        block, "its compression '" + block.compression + "' is not known here: zstd and none are");
   }
   if (block.uncompressed_size > kMostInChunk) {
     return damaged(block, "it claims " + std::to_string(block.uncompressed_size) + " bytes");
@@ -104,7 +105,8 @@ Result<Bytes> load(const File& file, const Block& block) {
   auto records = block.compression.empty() ? std::move(packed) : unpack(block, *packed);
   if (!records) return records;
   if (records->size() != block.uncompressed_size) return damaged(block, "its size is another");
-  if (block.crc != 0 && crc32_of(*records) != block.crc) return damaged(block, "its CRC is another");
+  if (block.crc != 0 && crc32_of(*records) != block.crc)
+    return damaged(block, "its CRC is another");
   return records;
 }
 

@@ -8,7 +8,7 @@
 namespace goshawk::recording {
 namespace {
 
-constexpr std::uint64_t kMostOutside = 4 << 20;     // [byte] of messages outside of chunks at once
+constexpr std::uint64_t kMostOutside = 4 << 20;      // [byte] of messages outside of chunks at once
 constexpr std::uint64_t kMostDefinition = 64 << 20;  // [byte] of a schema or a channel
 constexpr std::uint64_t kChunkHead = 64;             // [byte] chunk fields before the records
 

@@ -199,9 +199,8 @@ Bytes Writer::Impl::summary(std::uint64_t at) const {
   group(Opcode::chunk_index, [&] { std::ranges::for_each(chunks, [&](auto& c) { put(out, c); }); });
   const std::size_t offsets = bytes.size();
   for (const auto& g : groups) {
-    out.record(Opcode::summary_offset, [&](Out& o) {
-      o.number(std::uint8_t(g.opcode)).number(g.start).number(g.length);
-    });
+    out.record(Opcode::summary_offset,
+               [&](Out& o) { o.number(std::uint8_t(g.opcode)).number(g.start).number(g.length); });
   }
   out.number(std::uint8_t(Opcode::footer)).number(std::uint64_t{20});
   out.number(std::uint64_t(at + begin)).number(std::uint64_t(at + offsets));
@@ -222,8 +221,7 @@ Result<Writer> Writer::create(std::unique_ptr<Sink> sink, const WriterOptions& o
   impl->sink = std::move(sink);
   impl->options = options;
   Bytes head(kMagic.begin(), kMagic.end());
-  Out(head).record(Opcode::header,
-                   [&](Out& o) { o.text(options.profile).text(options.library); });
+  Out(head).record(Opcode::header, [&](Out& o) { o.text(options.profile).text(options.library); });
   auto status = impl->sink->reserve(head.size() + kFooterRoom);
   if (status) status = impl->append(head);
   impl->closed = !status;  // nothing to close then

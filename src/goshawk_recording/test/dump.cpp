@@ -46,8 +46,8 @@ int main(int argc, char** argv) {
   const auto read = reader->read({}, [&](const recording::MessageView& m) {
     const auto& channel = reader->channels().at(m.channel_id);
     const auto type = introspection::find_type(reader->schema_of(channel)->name);
-    const auto value = type ? introspection::cdr_to_json(**type, m.data)
-                            : Result<Json>(type.error());
+    const auto value =
+        type ? introspection::cdr_to_json(**type, m.data) : Result<Json>(type.error());
     if (!value) {
       fault = value.error().message;
       return false;

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <zstd.h>
+#include <algorithm>
 
 #include "goshawk/core/random.hpp"
 #include "memory_sink.hpp"

@@ -39,8 +39,10 @@ Written write_random(std::uint64_t seed, int count, std::uint64_t room = kPlenty
   }
   for (int k = 0; k < 3; ++k) {
     const auto schema = writer->add_schema("a/msg/T" + std::to_string(k), "ros2msg", "int32 x\n");
-    Channel channel{.schema_id = schema, .topic = "/t" + std::to_string(k),
-                    .message_encoding = "cdr", .metadata = {{"offered_qos_profiles", "- a: 1\n"}}};
+    Channel channel{.schema_id = schema,
+                    .topic = "/t" + std::to_string(k),
+                    .message_encoding = "cdr",
+                    .metadata = {{"offered_qos_profiles", "- a: 1\n"}}};
     channel.id = writer->add_channel(channel);
     w.channels.push_back(channel);
   }
@@ -207,8 +209,8 @@ TEST(Writer, RealFileHoldsTheBytesAndNoMore) {
 }
 
 TEST(Writer, UnknownChannelIsABug) {
-  auto writer = Writer::create(
-      std::make_unique<MemorySink>(std::make_shared<Bytes>(), kPlenty, true));
+  auto writer =
+      Writer::create(std::make_unique<MemorySink>(std::make_shared<Bytes>(), kPlenty, true));
   ASSERT_TRUE(writer.ok());
   EXPECT_THROW((void)writer->write({1, 0, 0, 0, {}}), std::invalid_argument);
   EXPECT_THROW((void)writer->add_channel({.schema_id = 9}), std::invalid_argument);

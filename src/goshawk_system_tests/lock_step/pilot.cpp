@@ -1,5 +1,5 @@
-// goshawk_lock_step_pilot END_S: node `pilot` of a flight in lock step. It sends goals and clouds at
-// simulated times of its own, so that the flight repeats bit for bit, and ends at END_S.
+// goshawk_lock_step_pilot END_S: node `pilot` of a flight in lock step. It sends goals and clouds
+// at simulated times of its own, so that the flight repeats bit for bit, and ends at END_S.
 
 #include <cstdio>
 #include <cstdlib>
@@ -21,8 +21,10 @@ struct Goal {
 };
 
 // The second comes in flight, the third cannot be reached: it is outside of the map.
-const Goal kGoals[] = {
-    {2.0, {3.0, 8.0, 2.0}}, {4.0, {3.5, 6.1, 1.1}}, {5.0, {90.0, 0.0, 1.0}}, {6.0, {3.0, 4.0, 1.5}}};
+const Goal kGoals[] = {{2.0, {3.0, 8.0, 2.0}},
+                       {4.0, {3.5, 6.1, 1.1}},
+                       {5.0, {90.0, 0.0, 1.0}},
+                       {6.0, {3.0, 4.0, 1.5}}};
 
 /// A patch of wall, 0.5 m x 0.5 m, that grows along x with every cloud.
 sensor_msgs::msg::PointCloud2 patch(std::int64_t now_ns, int number) {

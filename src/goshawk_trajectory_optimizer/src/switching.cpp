@@ -8,8 +8,8 @@
 namespace goshawk::trajectory_optimizer {
 namespace {
 
-constexpr double kLook = 0.125;      // of a longest piece: how closely the curve is looked at
-constexpr int kMostLooks = 40;       // along the curve, from a switch
+constexpr double kLook = 0.125;     // of a longest piece: how closely the curve is looked at
+constexpr int kMostLooks = 40;      // along the curve, from a switch
 constexpr double kLeastStay = 0.1;  // of a longest piece, for a polytope
 
 /// The trajectory of a plan, by time.

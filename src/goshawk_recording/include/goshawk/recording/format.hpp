@@ -15,7 +15,7 @@ using Bytes = std::vector<unsigned char>;
 using View = std::span<const unsigned char>;
 
 struct Schema {
-  std::uint16_t id = 0;  // 0 is none: a channel of no schema
+  std::uint16_t id = 0;       // 0 is none: a channel of no schema
   std::string name = {};      // "goshawk_msgs/msg/Path"
   std::string encoding = {};  // "ros2msg"; empty where no definition is known
   std::string data = {};      // the definition

@@ -8,8 +8,8 @@
 
 namespace goshawk::recording {
 
-/// Reads the messages of a topic in any namespace ("path": of /path and of /uav1/path), in the order
-/// of their log times. Who calls it links goshawk_runtime, which knows the types.
+/// Reads the messages of a topic in any namespace ("path": of /path and of /uav1/path), in the
+/// order of their log times. Who calls it links goshawk_runtime, which knows the types.
 /// @return without those that are no such message; io_failed where the file cannot be read;
 /// invalid_input that names the topic where none is left
 template <typename Message>
