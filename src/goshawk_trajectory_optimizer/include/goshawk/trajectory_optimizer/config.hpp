@@ -12,7 +12,7 @@ struct Config {
   std::string method = "scale";
   double piece_duration_s = 0.45;  // [s]
   int min_pieces = 8;
-  int refinement_passes = 3;
+  int refinement_passes = 2;
   double extra_time = 0.0;
   int max_iterations = 60;
   double max_stretch = 20.0;
