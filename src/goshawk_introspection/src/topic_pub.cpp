@@ -19,6 +19,7 @@ struct PubOptions {
   bool once = false;
   int count = 0;  // 0: until Ctrl-C
   double rate_hz = 1.0;
+  int readers = 1;  // that are waited for before the first message
 };
 
 int say_published(const PubOptions& options, const CommonOptions& common, int published,
@@ -98,6 +99,15 @@ Result<std::vector<unsigned char>> encoded(const Type& type, const std::string& 
   return json_to_cdr(type, *json);
 }
 
+// @return exit status
+int say_too_few(const Session& session, const runtime::RawPublisher& publisher,
+                const PubOptions& options) {
+  if (publisher.matched() == 0) return session.say_no_reader(options.topic, options.type);
+  return say_nothing("only " + std::to_string(publisher.matched()) + " of " +
+                     std::to_string(options.readers) + " readers of " + options.topic +
+                     " came, nothing was published");
+}
+
 /// A message a line, each once the one before has arrived. @return exit status
 int publish_lines(Session& session, const runtime::RawPublisher& publisher, const Type& type,
                   const PubOptions& options, const CommonOptions& common) {
@@ -107,10 +117,11 @@ int publish_lines(Session& session, const runtime::RawPublisher& publisher, cons
     if (line->find_first_not_of(" \t\r") == std::string::npos) continue;
     const auto bytes = encoded(type, *line);
     if (!bytes) return say_wrong_call(bytes.error().message);
-    if (publisher.matched() == 0) {
-      if (!session.wait_for(common.timeout_s, [&] { return publisher.matched() > 0; })) {
+    if (publisher.matched() < options.readers) {
+      if (!session.wait_for(common.timeout_s,
+                            [&] { return publisher.matched() >= options.readers; })) {
         if (Interruptible::interrupted()) break;
-        return session.say_no_reader(options.topic, options.type);
+        return say_too_few(session, publisher, options);
       }
       session.settle(common.timeout_s, [&] { return publisher.matched(); });
     }
@@ -143,16 +154,16 @@ int pub(const CommonOptions& common, PubOptions options) {
   const auto raw = runtime::raw_message_type(runtime::wire_type_name(options.type));
   const auto publisher = (*session)->node().advertise_raw(*name, raw, runtime::Qos::latched(1));
   if (from_input) return publish_lines(**session, publisher, **type, options, common);
-  const bool heard =
-      (*session)->wait_for(common.timeout_s, [&] { return publisher.matched() > 0; });
+  const bool heard = (*session)->wait_for(common.timeout_s,
+                                          [&] { return publisher.matched() >= options.readers; });
   if (Interruptible::interrupted()) return 0;
-  if (!heard && options.count > 0) {
-    const int status = (*session)->say_no_reader(*name, options.type);
-    return status;
-  }
+  if (!heard && options.count > 0) return say_too_few(**session, publisher, options);
   // All who read, not only the first that was met, get what is said only once.
   if (options.count > 0) (*session)->settle(common.timeout_s, [&] { return publisher.matched(); });
-  if (!heard) std::cerr << "goshawk: nobody reads " << *name << " so far" << std::endl;
+  if (!heard) {
+    std::cerr << "goshawk: " << publisher.matched() << " of " << options.readers << " readers of "
+              << *name << " so far" << std::endl;
+  }
   return publish_all(**session, publisher, *bytes, options, common);
 }
 
@@ -170,6 +181,10 @@ Verb topic_pub_verb() {
             app.add_option("-n,--times", options->count, "that many times, then end")
                 ->check(CLI::Range(1, 1'000'000'000))
                 ->excludes(once);
+            app.add_option("-w,--wait-matching-subscriptions", options->readers,
+                           "wait for so many readers first: a recorder comes after the writer")
+                ->check(CLI::Range(1, 1000))
+                ->capture_default_str();
             app.add_option("-r,--rate", options->rate_hz, "[Hz]")
                 ->check(CLI::Range(1e-3, 1e5))
                 ->capture_default_str();

@@ -176,6 +176,14 @@ TEST_F(Verbs, PublishesAMessageALineFromStandardInput) {
   EXPECT_EQ(goals().size(), 4u) << "those before the wrong one, and none behind it";
 }
 
+TEST_F(Verbs, PublishesNothingUntilSoManyRead) {
+  const auto few = run({"topic", "pub", "/uav1/goal", "std_msgs/String", "{data: d}", "--once",
+                        "-w", "2", "--timeout", "1"});
+  EXPECT_EQ(few.status, 1);
+  EXPECT_THAT(few.err, HasSubstr("only 1 of 2 readers of /uav1/goal came"));
+  EXPECT_TRUE(goals().empty());
+}
+
 TEST_F(Verbs, ListsNodes) {
   const auto list = find({"node", "list"});
   EXPECT_EQ(list.status, 0) << list.err;

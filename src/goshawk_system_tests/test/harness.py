@@ -195,9 +195,10 @@ def processes_of(token):
 class Publisher:
     """`goshawk topic pub`, which writes a message whenever it is told to."""
 
-    def __init__(self, sandbox, topic, kind):
+    def __init__(self, sandbox, topic, kind, readers=1):
         self.process = sandbox.start(GOSHAWK, "topic", "pub", topic, kind, "-", "--json",
-                                     "--timeout", "10", stdin=subprocess.PIPE)
+                                     "--wait-matching-subscriptions", str(readers),
+                                     "--timeout", "60", stdin=subprocess.PIPE)
         self.sent = 0
 
     def send(self, message):

@@ -75,7 +75,8 @@ class ReplayedStages(RecordingCase):
         self.assertEqual(self.sandbox.goshawk("world", world, "--json").status, 0)
         file, process = self.record("plans.mcap")
         launch, reports = self.launch(PLANNING, "planning", "-p", f"map_server:map_file:={world}")
-        requests = Publisher(self.sandbox, "plan_request", "goshawk_msgs/msg/PlanRequest")
+        # The search, and the recorder, which begins to read a topic once somebody writes it.
+        requests = Publisher(self.sandbox, "plan_request", "goshawk_msgs/msg/PlanRequest", 2)
         for number, goal in enumerate(GOALS, 1):
             requests.send(self.request(number, goal))
         def ends():
