@@ -1,8 +1,7 @@
 #!/usr/bin/python3
 """Reads the project's IDL files and writes one C++ source with the schema of every message.
 
-    idl_to_schema.py OUTPUT.cpp FILE.idl ...            with comments, for goshawk_introspection
-    idl_to_schema.py --layout OUTPUT.cpp FILE.idl ...   by names of the wire, for goshawk_runtime
+    idl_to_schema.py OUTPUT.cpp FILE.idl ...
 
 Understands the subset that idl/ uses: modules, structs, sequence<T>, arrays, strings, primitives,
 @extensibility(FINAL). Anything else stops it with file and line, so that no field is ever missing
@@ -140,20 +139,10 @@ def quoted(text):
     return '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'
 
 
-def wire_name(name):
-    """'goshawk_msgs/msg/Path' to 'goshawk_msgs::msg::dds_::Path_'"""
-    package, _, struct = name.rpartition("/")
-    return f"{package.replace('/', '::')}::dds_::{struct}_"
-
-
-def emit(structs, sizes, layout):
-    """@param layout  whether names are those of the wire, and comments are left out"""
-    def comment(text):
-        return "" if layout else f", {quoted(text)}"
-    header, space = (("layout.hpp", "goshawk::runtime::layout") if layout else
-                     ("goshawk/introspection/schema.hpp", "goshawk::introspection::generated"))
-    out = ["// Made from idl/ by idl_to_schema.py; edits are lost.", f'#include "{header}"', "",
-           f"namespace {space} {{", "namespace {", ""]
+def emit(structs, sizes):
+    out = ["// Made from idl/ by idl_to_schema.py; edits are lost.",
+           '#include "goshawk/runtime/schema.hpp"', "",
+           "namespace goshawk::runtime::schema {", "namespace {", ""]
     for index, struct in enumerate(structs):
         out.append(f"constexpr Field kFields{index}[] = {{")
         for field in struct.fields:
@@ -162,27 +151,24 @@ def emit(structs, sizes, layout):
             inner = -1 if primitive else next(
                 i for i, s in enumerate(structs) if s.name == ros_name(field.idl_type, struct))
             out.append(f"    {{{quoted(field.name)}, Kind::{kind}, Arity::{field.arity}, "
-                       f"{field.size}, {inner}{comment(field.comment)}}},")
+                       f"{field.size}, {inner}, {quoted(field.comment)}}},")
         out.append("};")
     out.append("constexpr Type kTypes[] = {")
     for index, struct in enumerate(structs):
-        name = wire_name(struct.name) if layout else struct.name
-        out.append(f"    {{{quoted(name)}{comment(struct.comment)}, kFields{index}, "
+        out.append(f"    {{{quoted(struct.name)}, {quoted(struct.comment)}, kFields{index}, "
                    f"{sizes[struct.name]}}},")
     out += ["};", "", "}  // namespace", "",
             "std::span<const Type> types() { return kTypes; }", "",
-            f"}}  // namespace {space}", ""]
+            "}  // namespace goshawk::runtime::schema", ""]
     return "\n".join(out)
 
 
 def main():
-    layout = sys.argv[1:2] == ["--layout"]
-    files = sys.argv[2 if layout else 1:]
-    if len(files) < 2:
+    if len(sys.argv) < 3:
         sys.exit(__doc__)
-    structs = [s for path in files[1:] for s in parse_file(path)]
-    text = emit(*order(structs), layout)
-    with open(files[0], "w", encoding="utf-8") as file:
+    structs = [s for path in sys.argv[2:] for s in parse_file(path)]
+    text = emit(*order(structs))
+    with open(sys.argv[1], "w", encoding="utf-8") as file:
         file.write(text)
 
 

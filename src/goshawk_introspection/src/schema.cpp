@@ -2,19 +2,15 @@
 
 #include <algorithm>
 #include <array>
+#include <vector>
 
 #include "goshawk/runtime/parameters.hpp"
 
 namespace goshawk::introspection {
 
-namespace generated {
-std::span<const Type> types();
-}
-
 namespace {
 
 // In the order of Kind.
-constexpr std::array<std::uint32_t, 13> kSizes = {1, 1, 1, 2, 2, 4, 4, 8, 8, 4, 8, 4, 0};
 constexpr std::array<std::string_view, 13> kRosNames = {
     "bool",  "int8",   "uint8",   "int16",   "uint16", "int32", "uint32",
     "int64", "uint64", "float32", "float64", "string", ""};
@@ -42,13 +38,6 @@ void add_fields(const Type& type, std::string& text, std::vector<int>& inner) {
 
 }  // namespace
 
-std::span<const Type> all_types() {
-  return generated::types();
-}
-
-std::uint32_t size_of(Kind kind) {
-  return kSizes[std::size_t(kind)];
-}
 std::string_view ros_name(Kind kind) {
   return kRosNames[std::size_t(kind)];
 }

@@ -66,8 +66,8 @@ std::vector<std::string> nodes_of(const std::string& participant,
   return {};
 }
 
-Json to_json(const runtime::EndpointInfo& endpoint,
-             const std::vector<runtime::ParticipantInfo>& participants) {
+Json endpoint_json(const runtime::EndpointInfo& endpoint,
+                   const std::vector<runtime::ParticipantInfo>& participants) {
   return {{"nodes", nodes_of(endpoint.participant, participants)},
           {"participant", endpoint.participant},
           {"type", endpoint.type},
@@ -102,7 +102,7 @@ int info(const CommonOptions& common, const std::string& topic) {
   Json subscribers = Json::array();
   for (const auto& endpoint : endpoints) {
     types.insert(endpoint.type);
-    (endpoint.writer ? publishers : subscribers).push_back(to_json(endpoint, participants));
+    (endpoint.writer ? publishers : subscribers).push_back(endpoint_json(endpoint, participants));
   }
   if (common.json) {
     std::cout << to_line(Json{{"name", *name},

@@ -1,29 +1,28 @@
 #include "payload_check.hpp"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cstdint>
 #include <cstring>
 #include <stdexcept>
 #include <vector>
 
-#include "layout.hpp"
+#include "goshawk/runtime/context.hpp"
+#include "goshawk/runtime/schema.hpp"
 
 namespace goshawk::runtime {
 namespace {
 
-using layout::Arity;
-using layout::Field;
-using layout::Kind;
-using layout::Type;
+using schema::Arity;
+using schema::Field;
+using schema::Kind;
+using schema::size_of;
+using schema::Type;
 
 constexpr std::size_t kEncapsulation = 4;  // [byte] in front; alignment counts from behind it
 constexpr std::size_t kString = sizeof(std::string), kVector = sizeof(std::vector<char>);
 constexpr std::size_t kInPlace =
     15;  // characters that a std::string holds without memory elsewhere
-// In the order of Kind; a string's is that of its length.
-constexpr std::array<std::size_t, 12> kSizes = {1, 1, 1, 2, 2, 4, 4, 8, 8, 4, 8, 4};
 
 /// [byte]
 struct Size {
@@ -37,7 +36,7 @@ std::size_t aligned(std::size_t at, std::size_t to) {
   return (at + to - 1) / to * to;
 }
 
-Size size_of(const Type& type, const std::vector<Size>& inner) {
+Size extent_of(const Type& type, const std::vector<Size>& inner) {
   Size all;
   std::size_t alignment = 1;
   bool same = true;
@@ -48,7 +47,7 @@ Size size_of(const Type& type, const std::vector<Size>& inner) {
     } else if (field.kind == Kind::string) {
       one = {kString, 4, 4, 0};
     } else {
-      one.memory = one.largest = one.first = one.wire = kSizes[std::size_t(field.kind)];
+      one.memory = one.largest = one.first = one.wire = size_of(field.kind);
     }
     if (field.arity == Arity::sequence) one = {kVector, 4, 4, 0};
     same = same && one.wire > 0;
@@ -67,7 +66,7 @@ Size size_of(const Type& type, const std::vector<Size>& inner) {
 const std::vector<Size>& sizes() {
   static const std::vector<Size> all = [] {
     std::vector<Size> list;
-    for (const Type& type : layout::types()) list.push_back(size_of(type, list));
+    for (const Type& type : schema::types()) list.push_back(extent_of(type, list));
     return list;
   }();
   return all;
@@ -97,14 +96,14 @@ class Walk {
     if (field.kind == Kind::structure) {
       const Size& size = sizes()[std::size_t(field.type)];
       if (size.wire > 0) return skip(size.largest, count, size.wire);
-      const Type& type = layout::types()[std::size_t(field.type)];
+      const Type& type = schema::types()[std::size_t(field.type)];
       for (std::uint32_t k = 0; k < count; ++k) {
         if (!over(type)) return false;
       }
       return true;
     }
     if (field.kind != Kind::string) {
-      const std::size_t size = kSizes[std::size_t(field.kind)];
+      const std::size_t size = size_of(field.kind);
       return skip(size, count, size);
     }
     for (std::uint32_t k = 0; k < count; ++k) {
@@ -117,8 +116,8 @@ class Walk {
   bool claim(const Field& field, std::uint32_t& count) {
     if (!number(count)) return false;
     const bool structure = field.kind == Kind::structure;
-    const std::size_t least = structure ? layout::types()[std::size_t(field.type)].least_size
-                                        : kSizes[std::size_t(field.kind)];
+    const std::size_t least =
+        structure ? schema::types()[std::size_t(field.type)].least_size : size_of(field.kind);
     if (count > left() / least) {
       fault_ = "claims " + std::to_string(count) + " elements of " + std::to_string(least) +
                " bytes or more, but the " + std::to_string(left()) + " bytes left allow " +
@@ -187,8 +186,9 @@ class Walk {
 }  // namespace
 
 PayloadCheck::PayloadCheck(std::string_view wire_name) {
-  const auto types = layout::types();
-  const auto found = std::ranges::find(types, wire_name, &Type::name);
+  const auto types = schema::types();
+  const auto found = std::ranges::find_if(
+      types, [&](const Type& type) { return wire_type_name(type.name) == wire_name; });
   if (found == types.end()) throw std::logic_error("no type of idl/: " + std::string(wire_name));
   type_ = &*found;
 }

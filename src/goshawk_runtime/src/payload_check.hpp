@@ -7,7 +7,7 @@
 
 namespace goshawk::runtime {
 
-namespace layout {
+namespace schema {
 struct Type;
 }
 
@@ -29,7 +29,7 @@ class PayloadCheck {
   std::string fault_of(std::span<const unsigned char> payload) const;
 
  private:
-  const layout::Type* type_;
+  const schema::Type* type_;
 };
 
 }  // namespace goshawk::runtime
