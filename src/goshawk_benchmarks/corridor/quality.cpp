@@ -51,7 +51,7 @@ Volume volume_of(const Polytope& polytope, const VoxelGrid& grid) {
       if (!(last > first)) continue;
       volume.total_m3 += last - first;
       volume.stolen_m3 +=
-          occupied_between(grid.occupied, first, last, int(std::floor(y)), int(std::floor(z)));
+          occupied_between(grid.grown, first, last, int(std::floor(y)), int(std::floor(z)));
     }
   }
   const double cell_m3 = std::pow(g.resolution_m, 3) * step * step;

@@ -48,7 +48,7 @@ Result<Mission> plan(double density, std::uint64_t seed) {
   auto blocked = inflate(world->occupied, growth_m, world->geometry.resolution_m);
   if (!blocked) return blocked.error();
   const auto grid = std::make_shared<const VoxelGrid>(VoxelGrid{.geometry = world->geometry,
-                                                                .occupied = *std::move(blocked),
+                                                                .grown = *std::move(blocked),
                                                                 .known = {},
                                                                 .inflation_m = growth_m});
   auto search = path_search::PathSearch::create({}).value();

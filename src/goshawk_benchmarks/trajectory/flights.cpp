@@ -21,7 +21,7 @@ Task task_of(const worlds::WorldSpec& spec, const std::string& name, const Vec3&
   if (!world) throw std::runtime_error(world.error().message);
   auto grid = std::make_shared<VoxelGrid>();
   grid->geometry = world->geometry;
-  grid->occupied = inflate(world->occupied, kGrowth_m, spec.resolution_m).value();
+  grid->grown = inflate(world->occupied, kGrowth_m, spec.resolution_m).value();
   grid->inflation_m = kGrowth_m;
   return {name, spec.density, grid, start, goal, {}};
 }

@@ -92,7 +92,7 @@ bool is_safe(const Trajectory& trajectory, const VoxelGrid& grid) {
   constexpr double kTouch_m = 1e-6;
   const auto blocked = [&](const Vec3& p) {
     const auto voxel = grid.geometry.index_of(p);
-    return !voxel || grid.occupied.test(*voxel);
+    return !voxel || grid.grown.test(*voxel);
   };
   // Inside an obstacle, and not only on its face, where every neighbour of the point is inside.
   const auto inside = [&](const Vec3& p) {

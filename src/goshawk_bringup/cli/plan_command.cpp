@@ -53,7 +53,7 @@ Status save(const Plan& plan, const LoadedMap& map, const Limits& limits,
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   flight_report::Flight flight;
-  VoxelGrid raw{.geometry = map.raw.geometry, .occupied = map.raw.occupied, .known = {}};
+  VoxelGrid raw{.geometry = map.raw.geometry, .grown = map.raw.occupied, .known = {}};
   flight.title = "Goshawk plan";
   flight.obstacles = &raw;
   flight.grown = map.grown.get();

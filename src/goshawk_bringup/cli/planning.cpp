@@ -53,7 +53,7 @@ Result<LoadedMap> load_map(const map_server::Config& config) {
   auto grown = map_server::make_voxel_grid(*raw, map_server::growth(config), 1);
   if (!grown) return grown.error();
   return LoadedMap{*std::move(raw), std::make_shared<const VoxelGrid>(*std::move(grown)),
-                   source->tree, map_server::growth(config).unknown};
+                   source->tree};
 }
 
 Result<Planner> Planner::create(const PlanningConfig& config) {
@@ -68,8 +68,6 @@ Result<Planner> Planner::create(const PlanningConfig& config) {
 
 void Planner::set_map(const LoadedMap& map) {
   grid_ = map.grown;
-  raw_.emplace(map_server::growing_voxels(map.raw.geometry, map.raw.occupied, map.raw.known,
-                                          map.unknown, map.grown->version));
   search_.set_map(grid_);
 }
 
@@ -96,9 +94,8 @@ Status Planner::run(const FlatState& start, const std::vector<Vec3>& goals_map,
   // The search may have moved the ends, or chosen another goal.
   plan.start.position = plan.path->waypoints_map.front();
   plan.goal.position = plan.path->waypoints_map.back();
-  const auto raw = raw_->obstacles(grid_->inflation_m);
   auto corridor = run_stage(plan, "corridor_builder", std::string(builder_.implementation()),
-                            [&] { return builder_.build(*grid_, plan.path->waypoints_map, &raw); });
+                            [&] { return builder_.build(*grid_, plan.path->waypoints_map); });
   if (!corridor) return corridor.error();
   plan.corridor = *std::move(corridor);
   auto solution =

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "goshawk/core/certificate.hpp"
-#include "goshawk/corridor_builder/raw_map.hpp"
+#include "goshawk/corridor_builder/corridor_builder.hpp"
 #include "goshawk/map_server/config.hpp"
 #include "goshawk/path_search/path_search.hpp"
 #include "goshawk/runtime/ros_args.hpp"
@@ -33,7 +33,6 @@ struct LoadedMap {
   map_server::RawVoxels raw;
   std::shared_ptr<const VoxelGrid> grown;
   map_server::OcTreePtr tree;
-  map_server::UnknownPolicy unknown = map_server::UnknownPolicy::occupied;
 };
 Result<LoadedMap> load_map(const map_server::Config& config);
 
@@ -70,7 +69,6 @@ class Planner {
   corridor_builder::CorridorBuilder builder_;
   trajectory_optimizer::TrajectoryOptimizer optimizer_;
   std::shared_ptr<const VoxelGrid> grid_;
-  std::optional<corridor_builder::RawMap> raw_;  // for the corridor's margin `sphere`
 };
 
 }  // namespace goshawk::cli

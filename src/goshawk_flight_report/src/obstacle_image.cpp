@@ -30,7 +30,7 @@ class Seen {
   }
   bool known(Index3 i) const { return grid_.is_known(i); }
   /// Occupied because it was measured so, not because nobody looked.
-  bool blocked(Index3 i) const { return grid_.occupied.test(i) && known(i); }
+  bool blocked(Index3 i) const { return grid_.grown.test(i) && known(i); }
 
   /// Index of a coordinate, clamped to the grid.
   int clamped(double coordinate, int axis) const {
@@ -124,7 +124,7 @@ ObstacleImage obstacle_image(const VoxelGrid* obstacles, const VoxelGrid* grown,
       bool grown_there = false;
       if (grown != nullptr && !guide.empty()) {
         const auto i = grown->geometry.index_of(center);
-        grown_there = i && grown->occupied.test(*i) && grown->is_known(*i);
+        grown_there = i && grown->grown.test(*i) && grown->is_known(*i);
       }
       result.image.pixels.push_back(packed(color_of(column, grown_there)));
     }

@@ -99,7 +99,7 @@ void append_grid(std::string& text, const char* name, const VoxelGrid* grid) {
   text += "],\"resolution\":";
   append(text, g.resolution_m);
   text += ",\"size\":[" + std::to_string(g.size.x) + ',' + std::to_string(g.size.y) + ',' +
-          std::to_string(g.size.z) + "],\"runs\":\"" + base64(runs_of(grid->occupied)) + "\"}";
+          std::to_string(g.size.z) + "],\"runs\":\"" + base64(runs_of(grid->grown)) + "\"}";
 }
 
 /// Comma-separated elements of a JSON array.

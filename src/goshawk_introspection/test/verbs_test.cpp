@@ -51,7 +51,7 @@ class Verbs : public testing::Test {
                                             });
     goshawk_msgs::msg::VoxelGrid map;
     map.header().frame_id("map");
-    map.occupied().assign(100, 7);
+    map.grown().assign(100, 7);
     ASSERT_TRUE(map_.publish(map));
     node_->every(0.02, [this] {
       goshawk_msgs::msg::Path path;
@@ -122,7 +122,7 @@ TEST_F(Verbs, EchoesMessages) {
 TEST_F(Verbs, EchoesTheLatchedMapToALateComer) {
   const auto map = find({"topic", "echo", "/uav1/map/voxels", "--once", "--json", "--no-arr"});
   EXPECT_EQ(map.status, 0) << map.err;
-  EXPECT_EQ(Json::parse(map.out)["occupied"], "<100 elements>");
+  EXPECT_EQ(Json::parse(map.out)["grown"], "<100 elements>");
 }
 
 TEST_F(Verbs, MeasuresRateDelayAndBandwidth) {

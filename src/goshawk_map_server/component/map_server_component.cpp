@@ -1,5 +1,5 @@
+#include <fmt/format.h>
 #include <malloc.h>
-
 #include <octomap/OcTree.h>
 
 #include <optional>
@@ -71,15 +71,12 @@ class MapServerComponent : public Component {
     node.every(kWholeMapPeriod_s, [this] {
       if (changed_) publish_whole();
     });
-    if (config_.publish_raw) {
-      raw_voxels_ = node.advertise<msg::VoxelGrid>("map/voxels/raw", Qos::latched());
-    }
     publish_whole();
     malloc_trim(0);  // what loading and publishing took for a moment; glibc may keep it for ever
     const auto& grid = map_.grid();
-    reporter_.ready("serves " + to_text(grid.geometry.size) + " voxels of " +
-                    std::to_string(grid.geometry.resolution_m) + " m, grown by " +
-                    std::to_string(grid.inflation_m) + " m");
+    reporter_.ready(fmt::format("serves {} voxels of {:.3g} m, obstacles inflated by {:.3g} m",
+                                to_text(grid.geometry.size), grid.geometry.resolution_m,
+                                grid.inflation_m));
   }
 
  private:
@@ -88,10 +85,11 @@ class MapServerComponent : public Component {
     {
       msg::VoxelGrid m;  // freed at once: the writer keeps the bytes for late joiners
       m.header(conversions::make_header(node_.now_ns()));
-      conversions::fill_msg(map_.grid(), m);
+      VoxelGrid published = map_.grid();  // shares its bits
+      if (!config_.publish_raw) published.raw = {};
+      conversions::fill_msg(published, m);
       send(voxels_, m);
     }
-    if (raw_voxels_) publish_raw();
     const std::string bytes = binary_payload(map_.tree());
     octomap_msgs::msg::Octomap m;
     m.header(conversions::make_header(node_.now_ns()));
@@ -100,16 +98,6 @@ class MapServerComponent : public Component {
     m.resolution(map_.tree().getResolution());
     m.data().assign(bytes.begin(), bytes.end());
     send(octomap_, m);
-  }
-
-  void publish_raw() {
-    const VoxelGrid& grid = map_.grid();
-    msg::VoxelGrid m;
-    m.header(conversions::make_header(node_.now_ns()));
-    conversions::fill_msg(growing_voxels(grid.geometry, map_.raw_occupied(), grid.known,
-                                         map_.growth().unknown, grid.version),
-                          m);
-    send(*raw_voxels_, m);
   }
 
   void on_cloud(const sensor_msgs::msg::PointCloud2& m) {
@@ -137,7 +125,10 @@ class MapServerComponent : public Component {
     return points;
   }
 
-  void publish_update(const GridUpdate& update) {
+  void publish_update(GridUpdate& update) {
+    if (!config_.publish_raw) {
+      for (Brick& brick : update.bricks) brick.raw.reset();
+    }
     msg::VoxelGridUpdate m;
     m.header(conversions::make_header(node_.now_ns()));
     conversions::fill_msg(update, m);
@@ -156,7 +147,6 @@ class MapServerComponent : public Component {
   Publisher<msg::VoxelGrid> voxels_;
   Publisher<msg::VoxelGridUpdate> updates_;
   Publisher<octomap_msgs::msg::Octomap> octomap_;
-  std::optional<Publisher<msg::VoxelGrid>> raw_voxels_;  // where it is asked for
   std::optional<RigidBodyState> vehicle_;
   bool changed_ = false;
 };

@@ -69,7 +69,7 @@ Vec3 speed_color(double ratio) {
 
 Marker voxel_marker(const VoxelGrid& grid, int most, std::int64_t stamp_ns) {
   Marker m = make_marker("obstacles", kCubes, grid.geometry.resolution_m, stamp_ns);
-  const auto surface = surface_of(grid.occupied);
+  const auto surface = surface_of(grid.grown);
   const std::size_t step = surface.size() / std::size_t(std::max(1, most)) + 1;
   for (std::size_t k = 0; k < surface.size(); k += step) {
     const double rise = double(surface[k].z) / std::max(1, grid.geometry.size.z - 1);

@@ -80,13 +80,13 @@ Result<VoxelGrid> octomap_voxels(std::span<const std::uint8_t> data, double reso
   VoxelGrid grid;
   grid.geometry = {resolution_m * Vec3(reader.low.x, reader.low.y, reader.low.z), resolution_m,
                    size};
-  grid.occupied = BitGrid(size, false);
+  grid.grown = BitGrid(size, false);
   for (const Leaf& leaf : reader.leaves) {
     const Index3 p{leaf.lower.x - reader.low.x, leaf.lower.y - reader.low.y,
                    leaf.lower.z - reader.low.z};
     for (int z = p.z; z < p.z + leaf.edge; ++z) {
       for (int y = p.y; y < p.y + leaf.edge; ++y) {
-        grid.occupied.set_run(p.x, p.x + leaf.edge, y, z, true);
+        grid.grown.set_run(p.x, p.x + leaf.edge, y, z, true);
       }
     }
   }

@@ -32,7 +32,7 @@ TEST(OctomapVoxels, ReadsOccupiedAndFreeVoxels) {
     for (int y = 0; y < 2; ++y) {
       for (int z = 0; z < 2; ++z) {
         const bool wanted = (x == 1 && y == 0 && z == 0) || (x == 0 && y == 1 && z == 1);
-        EXPECT_EQ(grid->occupied.test({x, y, z}), wanted) << x << y << z;
+        EXPECT_EQ(grid->grown.test({x, y, z}), wanted) << x << y << z;
       }
     }
   }
@@ -45,7 +45,7 @@ TEST(OctomapVoxels, FillsLargeLeaves) {
   const auto grid = octomap_voxels(bytes, 0.1);
   ASSERT_TRUE(grid);
   EXPECT_EQ(grid->geometry.size, (Index3{8, 8, 8}));
-  EXPECT_TRUE(grid->occupied.test({7, 7, 7}));
+  EXPECT_TRUE(grid->grown.test({7, 7, 7}));
 }
 
 TEST(OctomapVoxels, NeitherCrashesNorHangsOnWhatIsNoTree) {

@@ -64,8 +64,8 @@ void describe(Self& c, Visitor&& visit) {
   visit("max_voxels", c.max_voxels, "", "larger maps are refused", Range{1.0, 2147483647.0});
   visit(
       "publish_raw", c.publish_raw, "",
-      "also publish map/voxels/raw, the map before obstacles grow: a corridor_builder with margin "
-      "sphere needs it",
+      "map/voxels also brings the obstacles as measured: a corridor_builder with margin sphere "
+      "needs them",
       Anything{});
 }
 

@@ -22,18 +22,17 @@ class LiveMap {
   static Result<LiveMap> unknown_space(const Box& box, double resolution_m, const Growth& growth,
                                        std::int64_t max_voxels = 1'000'000'000);
 
+  /// With raw voxels. A copy shares its bits and stays as it is while scans come in.
   const VoxelGrid& grid() const { return grid_; }
-  /// Obstacles as they are, not grown; what is known of them is in grid().
-  const BitGrid& raw_occupied() const { return raw_occupied_; }
   const Growth& growth() const { return growth_; }
   const octomap::OcTree& tree() const { return *tree_; }
 
   struct ScanResult {
-    GridUpdate update;                 // brings grid() of before to grid() of now; may be empty
+    GridUpdate update;  // brings grid() of before to grid() of now; may be empty
     std::int64_t points_left_out = 0;  // not finite, or at the sensor itself: missing returns
   };
 
-  /// Inserts a scan and grows anew around what changed. The version rises by one, also where no
+  /// Inserts a scan and grows anew around what changed. The version rises by one, even if no
   /// brick changed.
   /// @param points_map, sensor_origin_map [m] frame map @param max_range_m [m] longer rays clear
   /// space up to there and hit nothing
@@ -42,11 +41,10 @@ class LiveMap {
                                  double max_range_m);
 
  private:
-  LiveMap(OcTreePtr tree, BitGrid raw_occupied, VoxelGrid grid, const Growth& growth);
+  LiveMap(OcTreePtr tree, VoxelGrid grid, const Growth& growth);
 
   OcTreePtr tree_;
-  BitGrid raw_occupied_;
-  VoxelGrid grid_;  // its known bits serve the raw voxels as well
+  VoxelGrid grid_;
   Growth growth_;
 };
 
