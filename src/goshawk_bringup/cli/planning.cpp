@@ -1,5 +1,7 @@
 #include "planning.hpp"
 
+#include <cstdio>
+
 #include "goshawk/map_server/map_file.hpp"
 #include "goshawk/runtime/component.hpp"
 #include "goshawk/runtime/stage.hpp"
@@ -48,12 +50,14 @@ Result<PlanningConfig> PlanningConfig::read(const runtime::RosArgs& args) {
 Result<LoadedMap> load_map(const map_server::Config& config) {
   auto source = map_server::load_map(config.map_file, map_server::load_options(config));
   if (!source) return source.error();
-  auto raw = map_server::voxelize(*source->tree, map_server::voxelize_options(config));
+  for (const std::string& note : source->notes) {
+    std::fprintf(stderr, "%s: %s\n", config.map_file.c_str(), note.c_str());
+  }
+  auto raw = map_server::voxelize(*source, map_server::voxelize_options(config));
   if (!raw) return raw.error();
   auto grown = map_server::make_voxel_grid(*raw, map_server::growth(config), 1);
   if (!grown) return grown.error();
-  return LoadedMap{*std::move(raw), std::make_shared<const VoxelGrid>(*std::move(grown)),
-                   source->tree};
+  return LoadedMap{*std::move(raw), std::make_shared<const VoxelGrid>(*std::move(grown))};
 }
 
 Result<Planner> Planner::create(const PlanningConfig& config) {

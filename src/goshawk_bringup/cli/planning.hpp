@@ -32,7 +32,6 @@ struct StageTime {
 struct LoadedMap {
   map_server::RawVoxels raw;
   std::shared_ptr<const VoxelGrid> grown;
-  map_server::OcTreePtr tree;
 };
 Result<LoadedMap> load_map(const map_server::Config& config);
 

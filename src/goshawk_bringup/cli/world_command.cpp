@@ -17,6 +17,9 @@ struct WorldOptions {
   std::string origin;
   std::vector<std::string> keep_free;
   std::string convert;
+  std::string box;
+  std::string cloud_origin;
+  map_server::LoadOptions load;
   std::string output;
   bool json = false;
 };
@@ -27,6 +30,22 @@ struct Made {
   BitGrid known;  // empty: all
   std::string kind;
 };
+
+// x0,y0,z0,x1,y1,z1
+Status read_box(const std::string& text, std::optional<map_server::Box>& box) {
+  if (text.empty()) return success();
+  std::size_t third = 0;
+  for (int k = 0; k < 3 && third != std::string::npos; ++k) third = text.find(',', third + 1);
+  if (third == std::string::npos) {
+    return fail(ErrorCode::invalid_parameter, "--box '" + text + "' is not x0,y0,z0,x1,y1,z1");
+  }
+  const auto lower = parse_point(text.substr(0, third));
+  const auto upper = parse_point(text.substr(third + 1));
+  if (!lower) return lower.error();
+  if (!upper) return upper.error();
+  box = map_server::Box{*lower, *upper};
+  return success();
+}
 
 Status read_points(WorldOptions& o) {
   const auto read = [](const std::string& text, Vec3& out) -> Status {
@@ -42,6 +61,8 @@ Status read_points(WorldOptions& o) {
   // neither unless asked for.
   if (!o.size.empty() || !o.keep_free.empty()) o.spec.keep_free.clear();
   if (!o.size.empty() && o.origin.empty()) o.spec.origin_m = Vec3::Zero();
+  if (auto s = read(o.cloud_origin, o.load.origin_file); !s) return s;
+  if (auto s = read_box(o.box, o.load.box); !s) return s;
   for (const auto& text : o.keep_free) {
     o.spec.keep_free.emplace_back();
     if (auto s = read(text, o.spec.keep_free.back()); !s) return s;
@@ -55,11 +76,14 @@ Result<Made> make(const WorldOptions& o) {
     if (!world) return world.error();
     return Made{world->geometry, std::move(world->occupied), {}, o.spec.kind};
   }
-  map_server::LoadOptions options;
+  map_server::LoadOptions options = o.load;
   options.resolution_m = o.spec.resolution_m;
   auto source = map_server::load_map(o.convert, options);
   if (!source) return source.error();
-  auto raw = map_server::voxelize(*source->tree);
+  for (const std::string& note : source->notes) {
+    std::fprintf(stderr, "%s: %s\n", o.convert.c_str(), note.c_str());
+  }
+  auto raw = map_server::voxelize(*source, {.box = options.box});
   if (!raw) return raw.error();
   return Made{raw->geometry, std::move(raw->occupied), std::move(raw->known), source->format};
 }
@@ -132,6 +156,11 @@ int world_command(const Arguments& arguments) {
       ->capture_default_str();
   app.add_option("--keep-free", o.keep_free, "x,y,z [m] that stays free when grown; may repeat");
   app.add_option("--convert", o.convert, "convert this map (.bt .ot .pcd .ply .3dmap) instead");
+  app.add_option("--box", o.box, "x0,y0,z0,x1,y1,z1 [m]: with --convert, cut the map to this");
+  app.add_option("--scale", o.load.scale,
+                 "[m] with --convert: a unit of the cloud's coordinates (0.001 for millimetres)");
+  app.add_option("--cloud-origin", o.cloud_origin,
+                 "x,y,z [m] with --convert: subtracted from every point of the cloud");
   app.add_flag("--json", o.json, "print one JSON object (docs/cli.md)");
   if (const auto status = parse(app, arguments)) return *status;
   return run(o);

@@ -127,6 +127,35 @@ void BitGrid::set_run(int x0, int x1, int y, int z, bool value) {
   }
 }
 
+Word BitGrid::bits_from(std::int64_t x, int y, int z) const {
+  const Word* words = row(y, z);
+  const std::int64_t n = std::int64_t(words_per_row_);
+  const std::int64_t w = x >> 6;
+  const int shift = int(x & 63);
+  const auto at = [&](std::int64_t k) {
+    return k >= 0 && k < n ? words[k] : outside_ ? ~Word{0} : Word{0};
+  };
+  return shift == 0 ? at(w) : at(w) >> shift | at(w + 1) << (64 - shift);
+}
+
+BitGrid BitGrid::window(Index3 lower, Index3 size) const {
+  BitGrid cut(size, outside_, outside_);
+  const int z0 = std::max(0, -lower.z), y0 = std::max(0, -lower.y);
+  const std::int64_t z1 = std::min<std::int64_t>(size.z, std::int64_t{size_.z} - lower.z);
+  const std::int64_t y1 = std::min<std::int64_t>(size.y, std::int64_t{size_.y} - lower.y);
+  const Word padding = cut.padding_mask();
+  for (int z = z0; z < z1; ++z) {
+    for (int y = y0; y < y1; ++y) {
+      for (std::size_t w = 0; w < cut.words_per_row_; ++w) {
+        Word word = bits_from(lower.x + 64 * std::int64_t(w), lower.y + y, lower.z + z);
+        if (w + 1 == cut.words_per_row_) word = outside_ ? word | padding : word & ~padding;
+        if (word != cut.row(y, z)[w]) cut.mutable_row(y, z)[w] = word;
+      }
+    }
+  }
+  return cut;
+}
+
 std::int64_t BitGrid::count() const {
   std::int64_t total = 0;
   for (int z = 0; z < size_.z; ++z) {

@@ -275,6 +275,27 @@ TEST(BitGrid, ShiftsByBricksLikeVoxelByVoxel) {
   EXPECT_EQ(wide.shifted({0, 1, 1}, false).row(0, 0), wide.row(8, 8)) << "chunks are shared";
 }
 
+TEST(BitGrid, GivesAWindowLikeVoxelByVoxel) {
+  Random random(7);
+  for (int n = 0; n < 200; ++n) {
+    const Index3 size{1 + random.below(150), 1 + random.below(20), 1 + random.below(12)};
+    BitGrid grid(size, random.chance(0.5));
+    for (int k = 0; k < 300; ++k) {
+      grid.set({random.below(size.x), random.below(size.y), random.below(size.z)}, true);
+    }
+    const Index3 lower{random.below(200) - 100, random.below(20) - 10, random.below(20) - 10};
+    const Index3 cut{1 + random.below(150), 1 + random.below(12), 1 + random.below(12)};
+    const BitGrid window = grid.window(lower, cut);
+    Reference expected(cut);
+    for (int k = 0; k < cut.x * cut.y * cut.z; ++k) {
+      const Index3 i{k % cut.x, k / cut.x % cut.y, k / cut.x / cut.y};
+      expected.at(i) = grid.test(i + lower);
+    }
+    expect_equal(window, expected);
+    expect_padding_is_outside(window);
+  }
+}
+
 TEST(BitGrid, AnEmptyGridIsAllOutside) {
   const BitGrid grid;
   EXPECT_TRUE(grid.empty());

@@ -92,7 +92,7 @@ int report(const std::string& path, double inflation_m) {
   }
   const double load_s = watch.lap_s();
   const double load_mb = peak_mb();
-  const auto raw = voxelize(*source->tree);
+  const auto raw = voxelize(*source);
   if (!raw) {
     std::fprintf(stderr, "%s\n", raw.error().message.c_str());
     return 1;

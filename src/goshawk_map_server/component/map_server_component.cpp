@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 #include <malloc.h>
-#include <octomap/OcTree.h>
-
 #include <optional>
 
 #include "cloud.hpp"
@@ -27,7 +25,7 @@ Box box_of(const Config& c) {
           Vec3(c.box_x_max_m, c.box_y_max_m, c.box_z_max_m)};
 }
 
-LiveMap make_map(const Config& config) {
+LiveMap make_map(const Config& config, Node& node) {
   auto map = [&]() -> Result<LiveMap> {
     if (config.map_file.empty()) {
       if (!config.use_box) {
@@ -40,7 +38,9 @@ LiveMap make_map(const Config& config) {
     }
     auto source = load_map(config.map_file, load_options(config));
     if (!source) return source.error();
-    return LiveMap::from_source(*std::move(source), voxelize_options(config), growth(config));
+    for (const std::string& note : source->notes) node.log().warn("{}: {}", config.map_file, note);
+    return LiveMap::from_source(*std::move(source), voxelize_options(config), growth(config),
+                                std::int64_t{config.max_tree_mb} * 1'000'000);
   }();
   if (!map) throw StartupFault(map.error());
   return *std::move(map);
@@ -55,7 +55,7 @@ class MapServerComponent : public Component {
           config_ = c;  // max_range_m of the scans to come
           return success();
         })),
-        map_(make_map(config_)),
+        map_(make_map(config_, node)),
         reporter_(node, "octomap"),
         voxels_(node.advertise<msg::VoxelGrid>("map/voxels", Qos::latched())),
         updates_(
@@ -90,13 +90,14 @@ class MapServerComponent : public Component {
       conversions::fill_msg(published, m);
       send(voxels_, m);
     }
-    const std::string bytes = binary_payload(map_.tree());
+    const auto bytes = map_.octomap_payload();
+    if (!bytes) return reporter_.fault(bytes.error());
     octomap_msgs::msg::Octomap m;
     m.header(conversions::make_header(node_.now_ns()));
     m.binary(true);
     m.id("OcTree");
-    m.resolution(map_.tree().getResolution());
-    m.data().assign(bytes.begin(), bytes.end());
+    m.resolution(map_.grid().geometry.resolution_m);
+    m.data().assign(bytes->begin(), bytes->end());
     send(octomap_, m);
   }
 

@@ -34,18 +34,22 @@ void take_changes(const octomap::OcTree& tree, UnknownPolicy policy, VoxelGrid& 
 
 }  // namespace
 
-LiveMap::LiveMap(OcTreePtr tree, VoxelGrid grid, const Growth& growth)
-    : tree_(std::move(tree)), grid_(std::move(grid)), growth_(growth) {
-  tree_->enableChangeDetection(true);
+LiveMap::LiveMap(OcTreePtr tree, VoxelGrid grid, const Growth& growth,
+                 std::int64_t max_tree_bytes)
+    : tree_(std::move(tree)),
+      grid_(std::move(grid)),
+      max_tree_bytes_(max_tree_bytes),
+      growth_(growth) {
+  if (tree_ != nullptr) tree_->enableChangeDetection(true);
 }
 
 Result<LiveMap> LiveMap::from_source(MapSource source, const VoxelizeOptions& options,
-                                     const Growth& growth) {
-  auto raw = voxelize(*source.tree, options);
+                                     const Growth& growth, std::int64_t max_tree_bytes) {
+  auto raw = voxelize(source, options);
   if (!raw) return raw.error();
   auto grid = make_voxel_grid(*raw, growth, 1);
   if (!grid) return grid.error();
-  return LiveMap(std::move(source.tree), *std::move(grid), growth);
+  return LiveMap(std::move(source.tree), *std::move(grid), growth, max_tree_bytes);
 }
 
 Result<LiveMap> LiveMap::unknown_space(const Box& box, double resolution_m, const Growth& growth,
@@ -55,22 +59,39 @@ Result<LiveMap> LiveMap::unknown_space(const Box& box, double resolution_m, cons
   RawVoxels raw{*geometry, BitGrid(geometry->size, true), BitGrid(geometry->size, false)};
   auto grid = grow(raw, growth, 1);
   if (!grid) return grid.error();
-  return LiveMap(std::make_shared<octomap::OcTree>(resolution_m), *std::move(grid), growth);
+  return LiveMap(std::make_shared<octomap::OcTree>(resolution_m), *std::move(grid), growth,
+                 std::numeric_limits<std::int64_t>::max());
+}
+
+Status LiveMap::make_tree() {
+  auto tree = make_octree(grid_.geometry, grid_.raw, grid_.known, max_tree_bytes_);
+  if (!tree) return tree.error();
+  tree_ = *std::move(tree);
+  tree_->enableChangeDetection(true);
+  return success();
+}
+
+Result<std::string> LiveMap::octomap_payload() const {
+  if (tree_ != nullptr) return binary_payload(*tree_);
+  return binary_payload(grid_.geometry, grid_.raw, grid_.known);
 }
 
 Result<LiveMap::ScanResult> LiveMap::insert_scan(std::span<const Vec3> points_map,
                                                  const Vec3& sensor_origin_map,
                                                  double max_range_m) {
+  if (tree_ == nullptr) {
+    if (auto status = make_tree(); !status) return status.error();
+  }
   tree_->resetChangeDetection();
-  const auto left_out = map_server::insert_scan(*tree_, points_map, sensor_origin_map, max_range_m);
-  if (!left_out) return left_out.error();
+  const auto inserted = map_server::insert_scan(*tree_, points_map, sensor_origin_map, max_range_m);
+  if (!inserted) return inserted.error();
 
   DirtyBricks dirty(grid_.geometry.size, reach_of(growth_, grid_.geometry));
   const VoxelGrid before = grid_;
   take_changes(*tree_, growth_.unknown, grid_, dirty);
 
   ScanResult result;
-  result.points_left_out = *left_out;
+  result.points_left_out = inserted->left_out;
   result.update.from_version = grid_.version;
   result.update.to_version = grid_.version + 1;
   for (const Index3 index : dirty.bricks()) {

@@ -30,7 +30,7 @@ void expect_same(const VoxelGrid& a, const VoxelGrid& b) {
 void expect_rebuilt(const LiveMap& map, const Box& box) {
   VoxelizeOptions options;
   options.box = box;
-  const RawVoxels raw = voxelize(map.tree(), options).value();
+  const RawVoxels raw = voxelize(*map.tree(), options).value();
   const auto anew = make_voxel_grid(raw, map.growth(), map.grid().version);
   if (anew) return expect_same(map.grid(), *anew);
   EXPECT_EQ(anew.code(), ErrorCode::map_empty);

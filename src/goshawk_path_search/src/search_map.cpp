@@ -16,40 +16,19 @@ int first_not_below(double bound_m, double origin_m, double resolution_m, int n)
   return int(std::clamp(i, 0.0, double(n)));
 }
 
-// Voxels lower.x to lower.x + bits of a row, and of another one's complement, into whole words.
-class RowCut {
- public:
-  using Word = BitGrid::Word;
-
-  RowCut(int x0, Index3 size, bool outside)
-      : first_(std::size_t(x0) / 64),
-        shift_(x0 % 64),
-        words_((std::size_t(size.x) + 63) / 64),
-        padding_(size.x % 64 == 0 ? Word{0} : ~Word{0} << (size.x % 64)),
-        outside_(outside) {}
-
-  /// @param row of `in_row` words @param known added where it is not set; may be null
-  void write(const Word* row, const Word* known, std::size_t in_row, BitGrid& to, int y, int z) {
-    const auto source = [&](std::size_t w) {
-      if (w >= in_row) return Word{0};
-      return row[w] | (known != nullptr ? ~known[w] : Word{0});
-    };
-    for (std::size_t w = 0; w < words_; ++w) {
-      Word word = source(first_ + w) >> shift_;
-      if (shift_ != 0) word |= source(first_ + w + 1) << (64 - shift_);
-      if (w + 1 == words_) word = outside_ ? word | padding_ : word & ~padding_;
-      // A chunk that stays is not cloned.
-      if (word != to.row(y, z)[w]) to.mutable_row(y, z)[w] = word;
-    }
+// A row of a cut, 64 voxels at a time: word_at(x) gives those from x on.
+template <typename WordAt>
+void write_row(BitGrid& cut, int y, int z, const WordAt& word_at) {
+  const int words = int(cut.words_per_row());
+  const int used = cut.size().x % 64;
+  const BitGrid::Word padding = used == 0 ? 0 : ~BitGrid::Word{0} << used;
+  for (int w = 0; w < words; ++w) {
+    BitGrid::Word word = word_at(64 * w);
+    if (w + 1 == words) word = cut.outside() ? word | padding : word & ~padding;
+    // A chunk that stays is not cloned.
+    if (word != cut.row(y, z)[w]) cut.mutable_row(y, z)[w] = word;
   }
-
- private:
-  std::size_t first_;
-  int shift_;
-  std::size_t words_;
-  Word padding_;
-  bool outside_;
-};
+}
 
 }  // namespace
 
@@ -104,30 +83,51 @@ Status SearchMap::place(const GridGeometry& g) {
 }
 
 // Rows of the derived grids whose source lies in a chunk that changed.
-void SearchMap::derive(const VoxelGrid& map, bool blocks) {
+void SearchMap::derive(const VoxelGrid& map) {
   const Index3 size = derived_.geometry.size;
-  const std::size_t in_row = map.grown.words_per_row();
-  const auto rows_in = [&](BitGrid::Rows rows, auto&& visit) {
+  const auto each_row = [&](BitGrid::Rows rows, auto&& visit) {
     const int z1 = std::min(rows.z1 - lower_.z, size.z), y1 = std::min(rows.y1 - lower_.y, size.y);
     for (int z = std::max(0, rows.z0 - lower_.z); z < z1; ++z) {
       for (int y = std::max(0, rows.y0 - lower_.y); y < y1; ++y) visit(y, z);
     }
   };
-  RowCut grown(lower_.x, size, true), known(lower_.x, size, false);
-  const auto write_grown = [&](BitGrid::Rows rows) {
-    rows_in(rows, [&](int y, int z) {
-      const auto* add = blocks ? map.known.row(y + lower_.y, z + lower_.z) : nullptr;
-      grown.write(map.grown.row(y + lower_.y, z + lower_.z), add, in_row, derived_.grown, y, z);
+  const auto bits = [&](const BitGrid& grid, int x, int y, int z) {
+    return grid.bits_from(lower_.x + x, lower_.y + y, lower_.z + z);
+  };
+  const auto write_grown = [&](int y, int z) {
+    write_row(derived_.grown, y, z, [&](int x) {
+      const BitGrid::Word grown = bits(map.grown, x, y, z);
+      return blocks_unknown_ ? grown | ~bits(map.known, x, y, z) : grown;
     });
   };
-  for_changed_chunks(source_->grown, map.grown, write_grown);
+  const auto write_known = [&](int y, int z) {
+    write_row(derived_.known, y, z, [&](int x) { return bits(map.known, x, y, z); });
+  };
+  for_changed_chunks(source_->grown, map.grown,
+                     [&](BitGrid::Rows rows) { each_row(rows, write_grown); });
   if (map.known.empty()) return;
   for_changed_chunks(source_->known, map.known, [&](BitGrid::Rows rows) {
-    if (blocks) write_grown(rows);
-    rows_in(rows, [&](int y, int z) {
-      known.write(map.known.row(y + lower_.y, z + lower_.z), nullptr, in_row, derived_.known, y, z);
-    });
+    if (blocks_unknown_) each_row(rows, write_grown);
+    each_row(rows, write_known);
   });
+}
+
+// As if derived from a map that is free and unknown throughout.
+Status SearchMap::begin(const VoxelGrid& map) {
+  source_.reset();
+  if (auto status = place(map.geometry); !status) return status;
+  const Index3 size = map.geometry.size, cut = derived_.geometry.size;
+  auto before = std::make_shared<VoxelGrid>();
+  before->geometry = map.geometry;
+  before->grown = BitGrid(size, true);
+  derived_.grown = BitGrid(cut, true, blocks_unknown_);
+  derived_.known = {};
+  if (!map.known.empty()) {
+    before->known = BitGrid(size, false);
+    derived_.known = BitGrid(cut, false);
+  }
+  source_ = std::move(before);
+  return success();
 }
 
 Result<std::shared_ptr<const VoxelGrid>> SearchMap::follow(std::shared_ptr<const VoxelGrid> map) {
@@ -141,26 +141,14 @@ Result<std::shared_ptr<const VoxelGrid>> SearchMap::follow(std::shared_ptr<const
   const bool blocks =
       unknown_ == UnknownRule::blocked && !map->unknown_is_occupied && !map->known.empty();
   if (!box_ && !blocks) return map;
-  const bool anew = source_ == nullptr || blocks != blocked_unknown_ ||
-                    !(source_->geometry == map->geometry) ||
-                    source_->known.empty() != map->known.empty();
-  if (anew) {
-    source_.reset();
-    if (auto status = place(map->geometry); !status) return status.error();
-    // As if derived from a map that is free and unknown throughout.
-    const Index3 size = map->geometry.size, cut = derived_.geometry.size;
-    auto before = std::make_shared<VoxelGrid>();
-    before->grown = BitGrid(size, true);
-    derived_.grown = BitGrid(cut, true, blocks);
-    derived_.known = {};
-    if (!map->known.empty()) {
-      before->known = BitGrid(size, false);
-      derived_.known = BitGrid(cut, false);
-    }
-    source_ = std::move(before);
-    blocked_unknown_ = blocks;
+  const bool follows = source_ != nullptr && blocks == blocks_unknown_ &&
+                       source_->geometry == map->geometry &&
+                       source_->known.empty() == map->known.empty();
+  blocks_unknown_ = blocks;
+  if (!follows) {
+    if (auto status = begin(*map); !status) return status.error();
   }
-  derive(*map, blocks);
+  derive(*map);
   derived_.version = map->version;
   derived_.inflation_m = map->inflation_m;
   derived_.unknown_is_occupied = map->unknown_is_occupied || blocks;

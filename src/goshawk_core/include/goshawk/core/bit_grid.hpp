@@ -71,6 +71,14 @@ class BitGrid {
   /// For writing, until the grid is copied. Padding bits must stay as they are.
   Word* mutable_row(int y, int z) { return chunks_[chunk_at(y, z)].own() + offset(y, z); }
 
+  /// @return the voxels x .. x + 63 of a row, the first in the lowest bit; those beyond the row are
+  /// outside(). @pre y and z inside
+  Word bits_from(std::int64_t x, int y, int z) const;
+
+  /// @return the voxels lower <= i < lower + size; those beyond this grid are outside()
+  /// @pre check_size(size) is ok
+  BitGrid window(Index3 lower, Index3 size) const;
+
   /// @return number of voxels (padding excluded) that are set
   std::int64_t count() const;
 

@@ -33,13 +33,14 @@ class SearchMap {
 
  private:
   Status place(const GridGeometry& geometry);
-  void derive(const VoxelGrid& map, bool blocks);
+  Status begin(const VoxelGrid& map);
+  void derive(const VoxelGrid& map);
 
   UnknownRule unknown_ = UnknownRule::as_mapped;
   std::optional<SearchBox> box_;
   std::shared_ptr<const VoxelGrid> source_;
-  bool blocked_unknown_ = false;  // in derived_
-  Index3 lower_;                  // of derived_ in source_ [voxels]
+  bool blocks_unknown_ = false;  // in derived_
+  Index3 lower_;                 // of derived_ in source_ [voxels]
   VoxelGrid derived_;
 };
 
