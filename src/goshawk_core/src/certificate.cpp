@@ -13,7 +13,6 @@ namespace goshawk {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kNoExcess = 1e-6;  // of a limit: rounding, not an excess
 
 // The larger violation. NaN is the worst of all and stays; std::max would lose it.
 void raise(double& worst, double violation) {
@@ -65,7 +64,8 @@ void measure_derivatives(const BezierPiece& piece, double begin_s, const Limits&
   if (!early) return;
   raise(c.start_excess_m_s, (v - 1.0) * limits.v_max_m_s);
   raise(c.start_excess_m_s2, (a - 1.0) * limits.a_max_m_s2);
-  if (v > 1.0 + kNoExcess || a > 1.0 + kNoExcess) c.start_excess_s = begin_s + piece.duration_s;
+  if (v > 1.0 + kLimitRounding || a > 1.0 + kLimitRounding)
+    c.start_excess_s = begin_s + piece.duration_s;
 }
 
 void measure_continuity(const BezierPiece& before, const BezierPiece& after, Certificate& c) {

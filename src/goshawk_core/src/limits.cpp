@@ -8,8 +8,6 @@
 namespace goshawk {
 namespace {
 
-constexpr double kNoExcess = 1e-6;  // of a limit: rounding, not an excess
-
 double norm_of(const Vec3& v, LimitNorm norm, double limit, double vertical) {
   switch (norm) {
     case LimitNorm::euclidean:
@@ -57,7 +55,7 @@ StartAllowance StartAllowance::of(const FlatState& start, const Limits& limits) 
   const double v = limits.speed_usage(start.velocity);
   const double a = limits.acceleration_usage(start.acceleration);
   StartAllowance allowance;
-  if (!(v > 1.0 + kNoExcess || a > 1.0 + kNoExcess)) return allowance;
+  if (!(v > 1.0 + kLimitRounding || a > 1.0 + kLimitRounding)) return allowance;
   const double v_to_a_s = limits.v_max_m_s / limits.a_max_m_s2;
   allowance.acceleration = std::max(1.0, a);
   allowance.speed = std::max(1.0, v) + allowance.acceleration * kReaction_s / v_to_a_s;

@@ -9,13 +9,13 @@
 namespace goshawk {
 namespace {
 
-Vec3 random_vector(Random& random, double size) {
+Vec3 any_vector(Random& random, double size) {
   return Vec3(random.uniform(-size, size), random.uniform(-size, size),
               random.uniform(-size, size));
 }
 
 FlatState random_state(Random& random) {
-  return {random_vector(random, 3.0), random_vector(random, 2.0), random_vector(random, 2.0), {}};
+  return {any_vector(random, 3.0), any_vector(random, 2.0), any_vector(random, 2.0), {}};
 }
 
 struct Case {
@@ -38,9 +38,9 @@ Case random_case(Random& random) {
   }
   c.goal = at;
   for (int i = 0; i < 2; ++i) {
-    c.polytopes.push_back(Polytope::box(random_vector(random, 1.0) - Vec3(6, 6, 6),
-                                        random_vector(random, 1.0) + Vec3(6, 6, 6)));
-    c.polytopes.back().add(random_vector(random, 1.0).normalized(), random.uniform(2.0, 8.0));
+    c.polytopes.push_back(Polytope::box(any_vector(random, 1.0) - Vec3(6, 6, 6),
+                                        any_vector(random, 1.0) + Vec3(6, 6, 6)));
+    c.polytopes.back().add(any_vector(random, 1.0).normalized(), random.uniform(2.0, 8.0));
   }
   c.limits = {.v_max_m_s = random.uniform(1.0, 30.0),
               .a_max_m_s2 = random.uniform(1.0, 200.0),

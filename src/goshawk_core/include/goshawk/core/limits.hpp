@@ -26,6 +26,9 @@ struct Limits {
   double acceleration_usage(const Vec3& acceleration) const;
 };
 
+/// Of a limit: a use above 1 by less than this is rounding, not an excess.
+inline constexpr double kLimitRounding = 1e-6;
+
 /// What a start above a limit is allowed until it is back under it; nothing if the start is within
 /// the limits. Pieces that begin before `until_s` are held against these factors of the limits,
 /// all others against the limits.
