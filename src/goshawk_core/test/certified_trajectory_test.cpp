@@ -64,7 +64,7 @@ TEST(CertifiedTrajectory, IsNotMadeOfWhatDoesNotHold) {
     EXPECT_NE(certified.error().message.find(family), std::string::npos)
         << certified.error().message;
   };
-  refused([](Line& l) { l.trajectory.pieces[0].control_points(1, 3) = 5.0; }, "position");
+  refused([](Line& l) { l.polytopes[0].half_spaces[0].offset_m = 0.5; }, "position");
   refused([](Line& l) { l.limits.v_max_m_s = 0.1; }, "velocity");
   refused([](Line& l) { l.limits.a_max_m_s2 = 0.01; }, "acceleration");
   refused([](Line& l) { l.limits.j_max_m_s3 = 0.1; }, "jerk");
