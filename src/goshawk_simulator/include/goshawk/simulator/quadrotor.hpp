@@ -28,6 +28,8 @@ enum class Control { commanded, failsafe, landing };
 ///     publish(quadrotor->measure());
 class Quadrotor {
  public:
+  using Config = simulator::Config;
+  using Control = simulator::Control;
   static constexpr std::int64_t kStep_ns = 1'000'000;
 
   /// @param make_plant what is flown: our own rigid body, or another

@@ -5,11 +5,11 @@
 #include <utility>
 
 #include "goshawk/conversions/plan.hpp"
-#include "goshawk/runtime/stage_reporter.hpp"
+#include "goshawk/stage/stage_reporter.hpp"
 
-namespace goshawk::runtime {
+namespace goshawk::stage {
 
-/// Time that `work` takes, beside its result. @return {result, [ns]}
+/// Runs `work` and measures it. @return {result, time [ns]}
 template <typename Work>
 auto timed(Work&& work) {
   const auto begin = std::chrono::steady_clock::now();
@@ -19,12 +19,13 @@ auto timed(Work&& work) {
 }
 
 /// @return [ns] how long a message travelled: from its stamp to its arrival, same clock
-inline std::int64_t wire_time_ns(const std_msgs::msg::Header& header, const MessageInfo& info) {
+inline std::int64_t wire_time_ns(const std_msgs::msg::Header& header,
+                                 const runtime::MessageInfo& info) {
   return info.received_ns - conversions::to_ns(header.stamp());
 }
 
-/// The request that a message carries, if it is valid and still worth an answer; else the failure
-/// has been reported already, and nothing is returned.
+/// Takes a request in. @return the request if it is valid and within its deadline; otherwise
+/// nothing, and the failure has been reported
 inline std::optional<conversions::PlanRequest> open_request(const goshawk_msgs::msg::PlanRequest& m,
                                                             std::int64_t now_ns,
                                                             StageReporter& reporter,
@@ -36,4 +37,4 @@ inline std::optional<conversions::PlanRequest> open_request(const goshawk_msgs::
   return {};
 }
 
-}  // namespace goshawk::runtime
+}  // namespace goshawk::stage
