@@ -3,9 +3,9 @@
 #include <functional>
 #include <memory>
 
-#include "goshawk/simulator/vehicle_parameters.hpp"
+#include "goshawk/plant/vehicle_parameters.hpp"
 
-namespace goshawk::simulator {
+namespace goshawk::plant {
 
 /// Twelve states of the body and four of the rotors.
 struct PlantState {
@@ -13,9 +13,9 @@ struct PlantState {
   Eigen::Vector4d rotor_speed_rad_s = Eigen::Vector4d::Zero();
 };
 
-/// What moves when rotors turn: all that Quadrotor's autopilot knows of a plant. One is our own
-/// (Plant), another is MuJoCo's (goshawk_mujoco); the autopilot, the wind and the sensors are the
-/// same for all. The same calls give the same bits.
+/// What moves when rotors turn: all that an autopilot knows of a simulated plant. goshawk_simulator
+/// has one, goshawk_mujoco another; the autopilot, the wind and the sensors are the same for both.
+/// The same calls give the same bits.
 class PlantModel {
  public:
   virtual ~PlantModel() = default;
@@ -35,7 +35,4 @@ class PlantModel {
 /// @pre parameters.check() ok
 using PlantFactory = std::function<std::unique_ptr<PlantModel>(const VehicleParameters&)>;
 
-/// Our own: Plant, by Runge and Kutta's fourth order.
-std::unique_ptr<PlantModel> make_rigid_body(const VehicleParameters& parameters);
-
-}  // namespace goshawk::simulator
+}  // namespace goshawk::plant
