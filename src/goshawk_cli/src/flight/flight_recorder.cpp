@@ -1,4 +1,4 @@
-#include "flight_recorder.hpp"
+#include "flight/flight_recorder.hpp"
 
 #include <chrono>
 #include <utility>

@@ -1,4 +1,4 @@
-#include "flight_folder.hpp"
+#include "flight/flight_folder.hpp"
 
 #include <fstream>
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "goshawk/runtime/context.hpp"
-#include "launch_process.hpp"
+#include "flight/launch_process.hpp"
 
 namespace goshawk::cli {
 

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "map_options.hpp"
+#include "planning/map_options.hpp"
 
 namespace goshawk::cli {
 

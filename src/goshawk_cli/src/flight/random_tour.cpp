@@ -1,4 +1,4 @@
-#include "random_tour.hpp"
+#include "flight/random_tour.hpp"
 
 #include "goshawk/core/random.hpp"
 

@@ -4,8 +4,8 @@
 #include "folders.hpp"
 #include "goshawk/flight_report/files.hpp"
 #include "goshawk/flight_report/page.hpp"
-#include "map_options.hpp"
-#include "plan_json.hpp"
+#include "planning/map_options.hpp"
+#include "planning/plan_json.hpp"
 #include "verbs.hpp"
 
 namespace goshawk::cli {

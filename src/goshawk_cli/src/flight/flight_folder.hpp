@@ -1,7 +1,7 @@
 #pragma once
 
-#include "flight_summary.hpp"
-#include "planning.hpp"
+#include "flight/flight_summary.hpp"
+#include "planning/planning.hpp"
 
 namespace goshawk::cli {
 

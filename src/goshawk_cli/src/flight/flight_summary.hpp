@@ -1,7 +1,7 @@
 #pragma once
 
 #include "cli.hpp"
-#include "flight_recorder.hpp"
+#include "flight/flight_recorder.hpp"
 #include "goshawk/flight_check/flight_check.hpp"
 
 namespace goshawk::cli {

@@ -1,4 +1,4 @@
-#include "planning.hpp"
+#include "planning/planning.hpp"
 
 #include "goshawk/map_server/map_file.hpp"
 #include "goshawk/runtime/component.hpp"

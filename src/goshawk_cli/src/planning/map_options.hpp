@@ -1,7 +1,7 @@
 #pragma once
 
 #include "cli.hpp"
-#include "planning.hpp"
+#include "planning/planning.hpp"
 
 namespace goshawk::cli {
 

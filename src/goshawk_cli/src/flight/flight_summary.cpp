@@ -1,4 +1,4 @@
-#include "flight_summary.hpp"
+#include "flight/flight_summary.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 #include "folders.hpp"
 #include "goshawk/conformance/conform.hpp"
 #include "goshawk/runtime/component.hpp"
-#include "launch_process.hpp"
+#include "flight/launch_process.hpp"
 #include "verbs.hpp"
 
 namespace goshawk::cli {

@@ -1,4 +1,4 @@
-#include "recorder_process.hpp"
+#include "flight/recorder_process.hpp"
 
 #include <unistd.h>
 

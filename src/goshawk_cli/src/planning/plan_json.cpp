@@ -1,4 +1,4 @@
-#include "plan_json.hpp"
+#include "planning/plan_json.hpp"
 
 namespace goshawk::cli {
 namespace {

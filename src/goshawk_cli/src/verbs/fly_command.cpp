@@ -7,14 +7,14 @@
 #include <filesystem>
 #include <functional>
 
-#include "flight_folder.hpp"
-#include "fly_options.hpp"
+#include "flight/flight_folder.hpp"
+#include "verbs/fly_options.hpp"
 #include "goshawk/map_server/octree.hpp"
 #include "goshawk/worlds/world.hpp"
-#include "launch_process.hpp"
-#include "plan_json.hpp"
-#include "random_tour.hpp"
-#include "recorder_process.hpp"
+#include "flight/launch_process.hpp"
+#include "planning/plan_json.hpp"
+#include "flight/random_tour.hpp"
+#include "flight/recorder_process.hpp"
 #include "verbs.hpp"
 
 namespace goshawk::cli {

@@ -1,4 +1,4 @@
-#include "launch_process.hpp"
+#include "flight/launch_process.hpp"
 
 #include <fcntl.h>
 #include <signal.h>

@@ -1,4 +1,4 @@
-#include "map_options.hpp"
+#include "planning/map_options.hpp"
 
 #include <charconv>
 

@@ -7,8 +7,8 @@
 #include "folders.hpp"
 #include "goshawk/conversions/plan.hpp"
 #include "goshawk/runtime/node.hpp"
-#include "launch_process.hpp"
-#include "map_options.hpp"
+#include "flight/launch_process.hpp"
+#include "planning/map_options.hpp"
 #include "verbs.hpp"
 
 namespace goshawk::cli {
