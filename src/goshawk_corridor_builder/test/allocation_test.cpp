@@ -41,7 +41,7 @@ TEST(CorridorBuilder, AllocatesNothingInARepeatedQuery) {
       ASSERT_TRUE(builder.build(grid, path, &raw, corridor).ok());
       const long before = allocations;
       ASSERT_TRUE(builder.build(grid, path, &raw, corridor).ok());
-      EXPECT_EQ(allocations, before) << config.generator << ", " << config.margin;
+      EXPECT_EQ(allocations, before) << to_word(config.generator) << ", " << to_word(config.margin);
       ++queries;
     }
     EXPECT_GT(queries, 10);

@@ -167,7 +167,7 @@ TEST(CorridorBuilder, FollowsATunnelOfOneVoxelWithHalfAVoxelAtEveryTurn) {
   EXPECT_LT(corridor->min_overlap_radius_m(), 0.1);
 }
 
-class BothGenerators : public ::testing::TestWithParam<const char*> {
+class BothGenerators : public ::testing::TestWithParam<Generator> {
  protected:
   CorridorBuilder builder_ = builder_of({.generator = GetParam()});
 };
