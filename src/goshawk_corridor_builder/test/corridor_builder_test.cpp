@@ -174,7 +174,8 @@ class BothGenerators : public ::testing::TestWithParam<Generator> {
   CorridorBuilder builder_ = builder_of({.generator = GetParam()});
 };
 
-INSTANTIATE_TEST_SUITE_P(Corridor, BothGenerators, ::testing::Values(Generator::ellipsoid, Generator::box));
+INSTANTIATE_TEST_SUITE_P(Corridor, BothGenerators,
+                         ::testing::Values(Generator::ellipsoid, Generator::box));
 
 TEST_P(BothGenerators, SaysItsName) {
   EXPECT_EQ(builder_.implementation(), to_word(GetParam()));

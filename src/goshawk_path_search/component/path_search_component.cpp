@@ -32,8 +32,8 @@ class PathSearchComponent : public Component {
     node.subscribe<msg::PlanRequest>(
         "plan_request", Qos::reliable_last(),
         [this](const msg::PlanRequest& m, const MessageInfo& info) { on_request(m, info); });
-    reporter_.ready(fmt::format("searches with {}, {}", search_.planner_name(),
-                                to_word(config_.corner_rule)));
+    reporter_.ready(
+        fmt::format("searches with {}, {}", search_.planner_name(), to_word(config_.corner_rule)));
   }
 
  private:
@@ -61,7 +61,7 @@ class PathSearchComponent : public Component {
   }
 
   /// What is left of the request's deadline.
-  StopSignal stop_of(const conversions::PlanRequest& request) const {
+  StopSignal stop_of(const PlanRequest& request) const {
     if (request.deadline_s == 0.0) return {};
     return StopSignal::after(request.deadline_s - double(node_.now_ns() - request.stamp_ns) * 1e-9);
   }

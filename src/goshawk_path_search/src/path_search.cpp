@@ -93,7 +93,8 @@ void PathSearch::set_map(std::shared_ptr<const VoxelGrid> map) {
     planner_resolution_m_ = resolution_m;
   }
   map_ = *std::move(searched);
-  const auto unknown = config_.unknown == UnknownRule::costly ? unknown_voxels(*map_) : std::nullopt;
+  const auto unknown =
+      config_.unknown == UnknownRule::costly ? unknown_voxels(*map_) : std::nullopt;
   planner_->set_map(map_->occupied, unknown ? &*unknown : nullptr);
 }
 

@@ -110,7 +110,8 @@ std::optional<BitGrid> unknown_voxels(const VoxelGrid& map) {
 Result<std::shared_ptr<const VoxelGrid>> make_search_map(std::shared_ptr<const VoxelGrid> map,
                                                          const Config& config,
                                                          const std::optional<SearchBox>& box) {
-  const bool wants_unknown = config.unknown == UnknownRule::free || config.unknown == UnknownRule::costly;
+  const bool wants_unknown =
+      config.unknown == UnknownRule::free || config.unknown == UnknownRule::costly;
   if (wants_unknown && map->unknown_is_occupied && !map->known.empty()) {
     return fail(ErrorCode::invalid_parameter,
                 "unknown is " + std::string(to_word(config.unknown)) +

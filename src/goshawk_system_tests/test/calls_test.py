@@ -30,8 +30,8 @@ class GoodPlan(CallsCase):
                          {"duration_s", "length_m", "mean_speed_m_s", "max_speed_m_s",
                           "max_acceleration_m_s2", "pieces"})
         self.assertEqual(set(plan["certificate"]),
-                         {"position_m", "velocity_m_s", "acceleration_m_s2", "joint_position_m",
-                          "joint_velocity_m_s", "joint_acceleration_m_s2", "start_m", "goal_m",
+                         {"position_m", "validity_s", "velocity_m_s", "acceleration_m_s2", "continuity_position_m",
+                          "continuity_velocity_m_s", "continuity_acceleration_m_s2", "start_m", "goal_m",
                           "jerk_m_s3", "start_excess_m_s", "start_excess_m_s2",
                           "start_excess_s"})
         for family, value in plan["certificate"].items():
