@@ -1,11 +1,11 @@
 // goshawk bench scenario MAP.3dmap SCEN.3dscen: do our lengths match the published ones, and how
 // long does a problem take?
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "common/measure.hpp"

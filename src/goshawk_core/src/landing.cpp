@@ -64,7 +64,8 @@ Status check_way_down(const VoxelGrid& grid, const Vec3& from_map, double land_h
 
 Status LandingGuard::check(const Vec3& from_map) const {
   if (rule_ == LandingRule::anywhere) return success();
-  if (rule_ == LandingRule::never) return fail(ErrorCode::cancelled, "the parameter landing is never");
+  if (rule_ == LandingRule::never)
+    return fail(ErrorCode::cancelled, "the parameter landing is never");
   if (grid_ == nullptr) {
     return fail(ErrorCode::no_map,
                 "no map has come yet on map/voxels to look for a free way down: is the map server "

@@ -23,8 +23,7 @@ void ParameterFaults::operator()(const char* name, double value, const char*, co
 void ParameterFaults::operator()(const char* name, const std::string& value, const char*,
                                  const char*, const OneOf& words) {
   if (std::ranges::find(words.choices, value) != words.choices.end()) return;
-  add(fmt::format("{} is '{}' and must be one of {}", name, value,
-                  fmt::join(words.choices, ", ")));
+  add(fmt::format("{} is '{}' and must be one of {}", name, value, fmt::join(words.choices, ", ")));
 }
 
 void ParameterFaults::add_not_listed(const char* name, int value,

@@ -8,13 +8,14 @@
 #include "goshawk/map_server/config.hpp"
 #include "goshawk/map_server/live_map.hpp"
 #include "goshawk/runtime/component.hpp"
-#include "goshawk/runtime/stage.hpp"
+#include "goshawk/stage/intake.hpp"
 #include "octomap_msgs.h"
 
 namespace goshawk::map_server {
 namespace {
 
 using namespace goshawk::runtime;
+using namespace goshawk::stage;
 namespace msg = goshawk_msgs::msg;
 
 // How often, at the most, the whole map is published anew for late joiners while scans come in.
@@ -88,7 +89,7 @@ class MapServerComponent : public Component {
       VoxelGrid published = map_.grid();  // shares its bits
       if (!config_.publish_raw) published.raw = {};
       conversions::fill_msg(published, m);
-      send(voxels_, m);
+      reporter_.send(voxels_, m);
     }
     const auto bytes = map_.octomap_payload();
     if (!bytes) return reporter_.fault(bytes.error());
@@ -98,7 +99,7 @@ class MapServerComponent : public Component {
     m.id("OcTree");
     m.resolution(map_.grid().geometry.resolution_m);
     m.data().assign(bytes->begin(), bytes->end());
-    send(octomap_, m);
+    reporter_.send(octomap_, m);
   }
 
   void on_cloud(const sensor_msgs::msg::PointCloud2& m) {
@@ -133,12 +134,7 @@ class MapServerComponent : public Component {
     msg::VoxelGridUpdate m;
     m.header(conversions::make_header(node_.now_ns()));
     conversions::fill_msg(update, m);
-    send(updates_, m);
-  }
-
-  template <typename Message>
-  void send(const Publisher<Message>& publisher, const Message& message) {
-    if (auto status = publisher.publish(message); !status) reporter_.fault(status.error());
+    reporter_.send(updates_, m);
   }
 
   Node& node_;

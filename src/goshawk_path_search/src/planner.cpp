@@ -104,11 +104,10 @@ Result<std::unique_ptr<GridPlanner>> make_planner(const Config& config, double r
     case Planner::rrt:
     case Planner::rrtstar:
     case Planner::prm:
-      return make_sampling_search(config.planner,
-                                  {.max_iterations = config.max_iterations,
-                                   .step_voxels = config.step_m / resolution_m,
-                                   .seed = std::uint64_t(config.seed),
-                                   .validity = config.validity});
+      return make_sampling_search(config.planner, {.max_iterations = config.max_iterations,
+                                                   .step_voxels = config.step_m / resolution_m,
+                                                   .seed = std::uint64_t(config.seed),
+                                                   .validity = config.validity});
     default:
       return make_grid_search(config.planner, config.corner_rule);
   }

@@ -300,11 +300,13 @@ TEST(SamplingPlanners, FindFreePathsThatRepeatBitForBit) {
       if (!path.ok()) continue;
       ++found;
       EXPECT_EQ(path->raw_map, repeated->raw_map) << to_word(planner);
-      EXPECT_EQ(path->raw_map, search.plan(start, goal)->raw_map) << to_word(planner) << ", same object";
+      EXPECT_EQ(path->raw_map, search.plan(start, goal)->raw_map)
+          << to_word(planner) << ", same object";
       EXPECT_EQ(path->raw_map.front(), start);
       EXPECT_EQ(path->raw_map.back(), goal);
       for (std::size_t i = 1; i < path->raw_map.size(); ++i) {
-        ASSERT_TRUE(line_is_free(*grid, path->raw_map[i - 1], path->raw_map[i])) << to_word(planner);
+        ASSERT_TRUE(line_is_free(*grid, path->raw_map[i - 1], path->raw_map[i]))
+            << to_word(planner);
       }
     }
     EXPECT_GT(found, 3) << to_word(planner);
@@ -368,7 +370,8 @@ TEST(FclValidity, GivesSamplingPlannersPathsThatAreFreeOnTheGrid) {
       ++found;
       EXPECT_EQ(path->raw_map, again.plan(start, goal)->raw_map) << to_word(planner);
       for (std::size_t i = 1; i < path->raw_map.size(); ++i) {
-        ASSERT_TRUE(line_is_free(*grid, path->raw_map[i - 1], path->raw_map[i])) << to_word(planner);
+        ASSERT_TRUE(line_is_free(*grid, path->raw_map[i - 1], path->raw_map[i]))
+            << to_word(planner);
       }
     }
     EXPECT_GT(found, 1) << to_word(planner);

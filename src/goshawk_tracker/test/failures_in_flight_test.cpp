@@ -251,8 +251,10 @@ TEST(FailuresInFlight, TheRuleOfLandingIsAsConfigured) {
     EXPECT_FALSE(loop.tracker.needs_map());
     const auto status = loop.tracker.status();
     EXPECT_EQ(status.mode, rule == LandingRule::never ? Mode::hold : Mode::land);
-    EXPECT_EQ(status.fault.code, rule == LandingRule::never ? ErrorCode::cancelled : ErrorCode::stage_silent);
-    EXPECT_NEAR(loop.vehicle.state().position_map.z(), rule == LandingRule::never ? 1.0 : 0.1, 0.02);
+    EXPECT_EQ(status.fault.code,
+              rule == LandingRule::never ? ErrorCode::cancelled : ErrorCode::stage_silent);
+    EXPECT_NEAR(loop.vehicle.state().position_map.z(), rule == LandingRule::never ? 1.0 : 0.1,
+                0.02);
   }
 }
 

@@ -26,7 +26,9 @@ struct Named {
 ///
 /// Words are read once, at the edge (parameters, options, messages); cores see the enum only.
 template <typename E>
-concept Worded = std::is_enum_v<E> && requires(E value) { words_of(value); };
+concept Worded = std::is_enum_v<E> && requires(E value) {
+  words_of(value);
+};
 
 /// @return the word for the value; empty if the list lacks it (a cast from a wrong number)
 template <Worded E>
