@@ -10,7 +10,7 @@ namespace goshawk {
 namespace {
 
 // Sizes on both sides of the edges of bricks.
-const std::vector<Index3> kSizes{{70, 9, 3}, {64, 8, 8}, {200, 17, 20}, {1, 1, 1}, {130, 24, 9}};
+const std::vector<Index3> kGridSizes{{70, 9, 3}, {64, 8, 8}, {200, 17, 20}, {1, 1, 1}, {130, 24, 9}};
 
 VoxelGrid grid_to_update(Index3 size = {70, 9, 3}) {
   VoxelGrid grid;
@@ -122,7 +122,7 @@ TEST(GridUpdate, BricksCoverTheGrid) {
 
 TEST(GridUpdate, FollowsAPlainMapThroughUpdatesAndShiftsAndKeepsVersionsThatOthersHold) {
   Random random(1);
-  for (const Index3 size : kSizes) {
+  for (const Index3 size : kGridSizes) {
     for (const bool raw : {false, true}) {
       VoxelGrid grid = grid_to_update(size);
       grid.unknown_is_occupied = raw;

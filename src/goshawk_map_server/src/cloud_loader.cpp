@@ -61,10 +61,6 @@ Result<Vec3> place(Cloud& cloud, const LoadOptions& options, MapSource& source) 
   return sensor_map;
 }
 
-bool holds(const Box& box, const Vec3& p) {
-  return (p.array() >= box.lower_map.array()).all() && (p.array() < box.upper_map.array()).all();
-}
-
 // Drops what is not finite or outside the box.
 Points usable(const Points& points, const LoadOptions& options, MapSource& source) {
   Points kept;
@@ -72,7 +68,7 @@ Points usable(const Points& points, const LoadOptions& options, MapSource& sourc
   for (const Vec3& p : points) {
     if (!is_finite(p)) {
       ++source.points_not_finite;
-    } else if (options.box && !holds(*options.box, p)) {
+    } else if (options.box && !options.box->holds(p)) {
       ++source.points_outside;
     } else {
       kept.push_back(p);

@@ -14,7 +14,7 @@ constexpr std::size_t kFewest = 100;     // points from which on "most of them" 
 constexpr double kFewShare = 0.005;      // of all points, to each side of each axis
 constexpr double kMuchLarger = 4.0;      // a box, for the sake of a few points
 constexpr double kLongest_m = 1000.0;    // a map that is longer in two directions is suspicious
-constexpr double kHalfKeys = 32768.0;    // [voxels] that an OctoMap reaches from the origin
+constexpr double kReach_voxels = 32768.0;    // [voxels] that an OctoMap reaches from the origin
 
 Box box_of(const Points& points) {
   Box box{points.front(), points.front()};
@@ -90,7 +90,7 @@ std::string sentence(const Outliers& outliers, std::size_t points) {
 
 // Coordinates of a map projection: all far from the origin, but not from each other.
 std::optional<std::string> far_from_origin(const Box& box, double resolution_m) {
-  const double reach_m = kHalfKeys * resolution_m;
+  const double reach_m = kReach_voxels * resolution_m;
   if ((box.upper_map - box.lower_map).maxCoeff() > reach_m) return {};
   std::string settings;
   for (int axis = 0; axis < 3; ++axis) {

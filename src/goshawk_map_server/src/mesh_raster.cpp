@@ -11,13 +11,13 @@ namespace {
 constexpr double kEdge = 1e-6;
 constexpr double kRounding = 1e-9;  // [voxel edges] of cut corners
 
-struct Range {
+struct Layers {
   int first, last;
 };
 
 // The layers of cubes that meet [lo, hi], of n. Compared as doubles first: a cast of a huge value
 // to int is undefined.
-Range layers_met(double lo, double hi, int n) {
+Layers layers_met(double lo, double hi, int n) {
   const double first = std::max(0.0, std::floor(lo + kEdge - kRounding));
   const double last = std::min(double(n - 1), std::floor(hi + kEdge + kRounding));
   if (!(first <= last)) return {0, -1};
@@ -73,15 +73,15 @@ void rasterise(const std::array<Vec3, 3>& corners, BitGrid& occupied) {
   const Index3 n = occupied.size();
   Polygon triangle;
   for (const Vec3& p : corners) triangle.add(p);
-  const Range zs = layers_met(triangle.least(2), triangle.most(2), n.z);
+  const Layers zs = layers_met(triangle.least(2), triangle.most(2), n.z);
   for (int z = zs.first; z <= zs.last; ++z) {
     const Polygon slab = layer(triangle, 2, z);
     if (slab.size == 0) continue;
-    const Range ys = layers_met(slab.least(1), slab.most(1), n.y);
+    const Layers ys = layers_met(slab.least(1), slab.most(1), n.y);
     for (int y = ys.first; y <= ys.last; ++y) {
       const Polygon row = layer(slab, 1, y);
       if (row.size == 0) continue;
-      const Range xs = layers_met(row.least(0), row.most(0), n.x);
+      const Layers xs = layers_met(row.least(0), row.most(0), n.x);
       if (xs.first <= xs.last) occupied.set_run(xs.first, xs.last + 1, y, z, true);
     }
   }

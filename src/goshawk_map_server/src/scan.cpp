@@ -33,10 +33,6 @@ Result<KeyBox> keys_of(const Box& box, double resolution_m) {
   return KeyBox{lower, lower + raster->size};
 }
 
-bool holds(const Box& box, const Vec3& p) {
-  return (p.array() >= box.lower_map.array()).all() && (p.array() < box.upper_map.array()).all();
-}
-
 // How far a ray to p, given by its share of the way, stays inside the box; below 0 if it misses it.
 double exit_of(const Box& box, const Vec3& origin, const Vec3& ray) {
   double enter = 0.0, leave = 1.0;
@@ -82,7 +78,7 @@ InsertedScan Scan::sort(std::span<const Vec3> points) {
     // Many drivers write a missing return as the sensor's own place: it would block that voxel.
     if (!std::isfinite(length_m) || length_m == 0.0) {
       ++result.left_out;
-    } else if (box_ != nullptr && !holds(*box_, p)) {
+    } else if (box_ != nullptr && !box_->holds(p)) {
       ++result.cut;
       clear_to(ray);
     } else {

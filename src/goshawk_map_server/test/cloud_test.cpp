@@ -15,15 +15,11 @@ using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using testing::is_occupied;
 
 Result<MapSource> load(const std::string& name, const std::string& bytes,
                        const LoadOptions& options = {}) {
   return load_map_bytes(bytes, name, options);
-}
-
-bool is_occupied(const RawVoxels& voxels, const Vec3& p) {
-  const auto voxel = voxels.geometry.index_of(p);
-  return voxel && voxels.occupied.get(*voxel);
 }
 
 bool is_free(const RawVoxels& voxels, const Vec3& p) {

@@ -10,6 +10,7 @@ namespace goshawk::map_server {
 namespace {
 
 using ::testing::HasSubstr;
+using testing::is_occupied;
 
 std::string case_file(const std::string& name) {
   const char* folder = std::getenv("GOSHAWK_CASES");
@@ -27,11 +28,6 @@ std::string case_file(const std::string& name) {
   if (variable.empty()) {                                                                 \
     GTEST_SKIP() << "the case " << (name) << " is not here: set GOSHAWK_CASES to its folder"; \
   }
-
-bool is_occupied(const RawVoxels& voxels, const Vec3& p) {
-  const auto voxel = voxels.geometry.index_of(p);
-  return voxel && voxels.occupied.get(*voxel);
-}
 
 TEST(SharedCase, TheMeshRoomHasItsWall) {
   GOSHAWK_NEED_CASE(file, "mesh_ply/mesh_room.ply");

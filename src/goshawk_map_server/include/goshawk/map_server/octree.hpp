@@ -22,6 +22,11 @@ using OcTreePtr = std::shared_ptr<octomap::OcTree>;
 struct Box {
   Vec3 lower_map = Vec3::Zero();
   Vec3 upper_map = Vec3::Zero();
+
+  /// Lower faces included, upper ones not.
+  bool holds(const Vec3& p_map) const {
+    return (p_map.array() >= lower_map.array()).all() && (p_map.array() < upper_map.array()).all();
+  }
 };
 
 /// The smallest grid on the tree's raster (voxel faces at multiples of the resolution) that
