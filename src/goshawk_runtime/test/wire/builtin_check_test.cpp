@@ -6,15 +6,12 @@
 namespace goshawk::runtime {
 namespace {
 
-using runtime_test::Body;
-using runtime_test::Datagram;
+using namespace runtime_test;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
 constexpr std::uint32_t kParticipants = 0x000100c2, kPublications = 0x000003c2,
                         kLiveliness = 0x000200c2, kHandshake = 0x000201c3;
-constexpr std::uint8_t kData = 21, kDataFrag = 22;
-constexpr unsigned kHasData = 4;
 
 Body encapsulation(std::uint8_t kind) {
   return Body().u8(0).u8(kind).u16(0);

@@ -8,7 +8,12 @@
 
 namespace goshawk::runtime_test {
 
-using Bytes = std::vector<std::byte>;
+using RawBytes = std::vector<std::byte>;
+
+// Kinds of submessages, and flags of DATA.
+constexpr std::uint8_t kAcknack = 6, kHeartbeat = 7, kGap = 8, kInfoTime = 9, kInfoSource = 12,
+                       kInfoDestination = 14, kNackFrag = 18, kData = 21, kDataFrag = 22;
+constexpr unsigned kInlineQos = 2, kHasData = 4, kHasKey = 8;
 
 /// Numbers in little-endian order, as most senders write them.
 class Body {
@@ -41,7 +46,7 @@ class Body {
     return u16(id).u16(std::uint16_t(value.bytes.size())).append(value);
   }
 
-  Bytes bytes;
+  RawBytes bytes;
 
  private:
   Body& number(std::uint64_t value, int size) {
@@ -66,7 +71,7 @@ class Datagram {
     body_.u8(kind).u8(std::uint8_t(flags | kLittleEndian)).u16(claimed).append(body);
     return *this;
   }
-  const Bytes& bytes() const { return body_.bytes; }
+  const RawBytes& bytes() const { return body_.bytes; }
 
  private:
   Body body_;

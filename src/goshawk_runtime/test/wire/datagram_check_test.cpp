@@ -6,17 +6,12 @@
 namespace goshawk::runtime {
 namespace {
 
-using runtime_test::Body;
-using runtime_test::Bytes;
-using runtime_test::Datagram;
+using namespace runtime_test;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using wire::fault_of;
 
 constexpr std::uint32_t kReader = 0x00000107, kWriter = 0x00000203;
-constexpr std::uint8_t kAcknack = 6, kHeartbeat = 7, kGap = 8, kInfoTime = 9, kInfoSource = 12,
-                       kInfoDestination = 14, kNackFrag = 18, kData = 21, kDataFrag = 22;
-constexpr unsigned kInlineQos = 2, kHasData = 4, kHasKey = 8;
 
 std::string fault(const Datagram& d) {
   return std::string(fault_of(d.bytes()));
@@ -75,9 +70,9 @@ TEST(DatagramCheck, RefusesStatisticsThatAreNotTheLast) {
 
 TEST(DatagramCheck, RefusesWhatIsNoRtps2) {
   EXPECT_THAT(std::string(fault_of({})), HasSubstr("header"));
-  Bytes bytes = Datagram().add(kHeartbeat, heartbeat(1, 1)).bytes();
+  RawBytes bytes = Datagram().add(kHeartbeat, heartbeat(1, 1)).bytes();
   for (const std::size_t at : {0, 3, 4}) {
-    Bytes other = bytes;
+    RawBytes other = bytes;
     other[at] = std::byte{0x51};
     EXPECT_THAT(std::string(fault_of(other)), HasSubstr("header")) << at;
   }
@@ -87,7 +82,7 @@ TEST(DatagramCheck, RefusesWhatIsNoRtps2) {
 TEST(DatagramCheck, RefusesEveryCutThatIsNotBetweenSubmessages) {
   Datagram d;
   d.add(kInfoTime, Body().zeros(8)).add(kData, data().zeros(8), kHasData).add(kGap, gap(3, 5, 8));
-  const Bytes& whole = d.bytes();
+  const RawBytes& whole = d.bytes();
   int admitted = 0;
   for (std::size_t size = 0; size < whole.size(); ++size) {
     admitted += wire::admits(std::span(whole).first(size)) ? 1 : 0;

@@ -13,8 +13,8 @@ namespace goshawk::runtime {
 namespace {
 
 using runtime_test::Body;
-using runtime_test::Bytes;
 using runtime_test::Datagram;
+using runtime_test::RawBytes;
 using runtime_test::spin_until;
 using std_msgs::msg::String;
 using testing::HasSubstr;
@@ -27,14 +27,14 @@ class Heard {
     const std::lock_guard lock(mutex_);
     all_.emplace_back(datagram.begin(), datagram.end());
   }
-  std::vector<Bytes> all() const {
+  std::vector<RawBytes> all() const {
     const std::lock_guard lock(mutex_);
     return all_;
   }
 
  private:
   mutable std::mutex mutex_;
-  std::vector<Bytes> all_;
+  std::vector<RawBytes> all_;
 };
 
 class ReceiveFilter : public testing::Test {
@@ -95,13 +95,13 @@ TEST_F(ReceiveFilter, HoldsParticipantsToTheirPort) {
 TEST_F(ReceiveFilter, KeepsAPeerThatAStrangerSaysHasLeft) {
   expect_talk();
   const auto heard = heard_.all();
-  const auto is_news = [](const Bytes& d) {  // a participant's announcement
+  const auto is_news = [](const RawBytes& d) {  // a participant's announcement
     const std::byte writer[] = {std::byte{0}, std::byte{1}, std::byte{0}, std::byte{0xc2}};
     return !std::ranges::search(d, writer).empty();
   };
   const auto news = std::ranges::find_if(heard, is_news);
   ASSERT_NE(news, heard.end());
-  Bytes left(news->begin(), news->begin() + 20);
+  RawBytes left(news->begin(), news->begin() + 20);
   const Body prefix = [&] {
     Body b;
     b.bytes.assign(news->begin() + 8, news->begin() + 20);
