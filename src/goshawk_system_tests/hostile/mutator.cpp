@@ -102,6 +102,15 @@ void Mutator::change_submessages(Bytes& d, std::span<const Bytes> good) {
   }
 }
 
+bool carries_sample(const Bytes& d) {
+  constexpr std::size_t kWriterEnds = 15;  // [byte] behind the beginning of a DATA
+  return std::ranges::any_of(submessages(d), [&](std::size_t at) {
+    const bool data = d[at] == std::byte{0x15} || d[at] == std::byte{0x16};
+    // The last byte of a built-in endpoint's id has both upper bits.
+    return data && at + kWriterEnds < d.size() && d[at + kWriterEnds] < std::byte{0xc0};
+  });
+}
+
 void replace_name(Bytes& datagram, std::span<const std::byte> from, std::span<const std::byte> to) {
   auto at = datagram.begin();
   while (true) {

@@ -28,6 +28,9 @@ class Mutator {
   Random random_;
 };
 
+/// @return whether a sample of a topic is in it; discovery is no such
+bool carries_sample(const Bytes& datagram);
+
 /// Puts another participant's name in place of `from`, in the header and wherever else it stands.
 void replace_name(Bytes& datagram, std::span<const std::byte> from, std::span<const std::byte> to);
 

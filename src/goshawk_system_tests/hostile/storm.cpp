@@ -8,11 +8,13 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <charconv>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <iterator>
 #include <set>
 #include <sstream>
 #include <string>
@@ -105,6 +107,11 @@ struct Sent {
 
 Sent storm(const Options& options, const Observer::Captured& captured, const Joined& joined,
            const std::vector<unsigned>& ports) {
+  // What others say of themselves, in the name of the one that has joined: no samples, since this
+  // is about datagrams, and a member may publish.
+  std::vector<Bytes> about_others;
+  std::ranges::remove_copy_if(captured.received, std::back_inserter(about_others),
+                              goshawk::hostile::carries_sample);
   goshawk::Random random(options.seed);
   Mutator mutate(random.next());
   const Socket socket;
@@ -119,10 +126,12 @@ Sent storm(const Options& options, const Observer::Captured& captured, const Joi
     const int role = random.below(3);
     if (role == 0) {
       socket.send(mutate(joined.datagrams()), port);
-    } else {
-      const Bytes changed = mutate(captured.received);
+    } else if (role == 1 && !about_others.empty()) {
+      const Bytes changed = mutate(about_others);
       const bool has_name = changed.size() >= kPrefixAt + kPrefix;
-      socket.send(role == 1 && has_name ? joined.as_own(changed) : changed, port);
+      socket.send(has_name ? joined.as_own(changed) : changed, port);
+    } else {
+      socket.send(mutate(captured.received), port);
     }
     (role == 2 ? sent.as_others : sent.as_joined)++;
     std::this_thread::sleep_until(begin + std::chrono::duration<double>(double(k) / options.rate));
