@@ -94,6 +94,11 @@ std::string about(const CLI::ParseError& error, const CLI::App& app) {
     return fmt::format("a verb is missing: {} {}", call_of(app),
                        fmt::join(words_below(app), " | "));
   }
+  const std::string excludes = " excludes ";
+  if (const auto at = text.find(excludes); error.get_name() == "ExcludesError") {
+    return fmt::format("{} and {}: give one of them, not both", text.substr(0, at),
+                       text.substr(at + excludes.size()));
+  }
   return text;
 }
 
