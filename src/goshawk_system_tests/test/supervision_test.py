@@ -206,7 +206,7 @@ class OddNames(SupervisionCase):
         path = folder / f"{self.NAME}.yaml"
         path.write_text("stages:\n  - component: map_server\n  - component: simulator\n"
                         f"    params: {{start_x_m: 3.5}}\n"
-                        "  - command: [./my stage #2]\n    name: mine\n")
+                        "  - command: ['./my stage #2']\n    name: mine\n")
         program = folder / "my stage #2"
         program.write_text("#!/bin/sh\necho \"$0\"; exec sleep 1000\n")
         program.chmod(0o755)
