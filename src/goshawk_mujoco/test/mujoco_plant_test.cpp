@@ -9,9 +9,9 @@
 namespace goshawk::mujoco {
 namespace {
 
-using simulator::PlantState;
-using simulator::VehicleParameters;
-using Vec4 = Eigen::Vector4d;
+using plant::PlantState;
+using plant::VehicleParameters;
+using Vec4 = Vec4;
 
 PlantState hovering(const VehicleParameters& p) {
   PlantState state;

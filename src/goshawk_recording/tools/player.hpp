@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "goshawk/introspection/schema.hpp"
-#include "goshawk/recording/replay.hpp"
+#include "goshawk/recording_tools/replay.hpp"
 #include "goshawk/runtime/node.hpp"
 #include "turns.hpp"
 

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "goshawk/introspection/codec.hpp"
-#include "goshawk/recording/replay.hpp"
+#include "goshawk/recording_tools/replay.hpp"
 
 namespace goshawk::recording {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "goshawk/recording/record.hpp"
+#include "goshawk/recording_tools/record.hpp"
 #include "goshawk/recording/writer.hpp"
 #include "goshawk/runtime/node.hpp"
 

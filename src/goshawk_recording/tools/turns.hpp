@@ -4,7 +4,7 @@
 #include <string>
 
 #include "goshawk/recording/format.hpp"
-#include "goshawk/recording/record.hpp"
+#include "goshawk/recording_tools/record.hpp"
 #include "goshawk/runtime/node.hpp"
 
 namespace goshawk::recording {

@@ -4,9 +4,12 @@
 #include <cmath>
 
 namespace goshawk::simulator {
+
+using plant::VehicleParameters;
+
 namespace {
 
-using Vec4 = Eigen::Vector4d;
+using Vec4 = Vec4;
 
 // Signs for front left, rear left, rear right, front right. Thrust at +y rolls to the right hand's
 // positive x; thrust at +x pitches the nose up, about -y.

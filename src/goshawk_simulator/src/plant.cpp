@@ -3,9 +3,14 @@
 #include <Eigen/LU>
 
 namespace goshawk::simulator {
+
+using plant::PlantModel;
+using plant::PlantState;
+using plant::VehicleParameters;
+
 namespace {
 
-using Vec4 = Eigen::Vector4d;
+using Vec4 = Vec4;
 using Packed = Eigen::Matrix<double, 17, 1>;
 
 // Layout: position, velocity, quaternion (x, y, z, w), angular velocity, rotor speeds.

@@ -4,6 +4,9 @@
 #include <cmath>
 
 namespace goshawk::simulator {
+
+using plant::VehicleParameters;
+
 namespace {
 
 constexpr double kVelocityGain_1_s = 5.0;    // braking and damping
@@ -12,11 +15,6 @@ constexpr double kAtRest_m_s = 0.25;         // slow enough to choose the place 
 constexpr double kThrustShare = 0.9;         // of the maximum; the rest is for attitude control
 
 }  // namespace
-
-double yaw_of(const Eigen::Quaterniond& q_map_base) {
-  const Vec3 x_base = q_map_base * Vec3::UnitX();
-  return std::atan2(x_base.y(), x_base.x());
-}
 
 PositionHold::PositionHold(const VehicleParameters& parameters, double max_tilt_rad)
     : mass_kg_(parameters.mass_kg),

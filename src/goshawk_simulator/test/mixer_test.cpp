@@ -5,9 +5,12 @@
 #include "goshawk/core/random.hpp"
 
 namespace goshawk::simulator {
+
+using plant::VehicleParameters;
+
 namespace {
 
-using Vec4 = Eigen::Vector4d;
+using Vec4 = Vec4;
 
 Wrench random_wrench(Random& random, double thrust, double tilt, double yaw) {
   return {random.uniform(0.0, thrust),

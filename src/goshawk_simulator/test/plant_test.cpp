@@ -5,9 +5,13 @@
 #include <cmath>
 
 namespace goshawk::simulator {
+
+using plant::PlantState;
+using plant::VehicleParameters;
+
 namespace {
 
-using Vec4 = Eigen::Vector4d;
+using Vec4 = Vec4;
 
 VehicleParameters without_drag() {
   VehicleParameters p;

@@ -1,5 +1,5 @@
 #include "goshawk/runtime/component.hpp"
-#include "goshawk/runtime/stage.hpp"
+#include "goshawk/stage/intake.hpp"
 #include "goshawk/trajectory_optimizer/config.hpp"
 #include "goshawk/trajectory_optimizer/trajectory_optimizer.hpp"
 #include "goshawk/trajectory_optimizer/yaw.hpp"
@@ -8,6 +8,7 @@ namespace goshawk::trajectory_optimizer {
 namespace {
 
 using namespace goshawk::runtime;
+using namespace goshawk::stage;
 namespace msg = goshawk_msgs::msg;
 
 TrajectoryOptimizer make_optimizer(const Config& config) {
@@ -46,9 +47,8 @@ class TrajectoryOptimizerComponent : public Component {
     auto [solution, compute_ns] = timed([&]() -> Result<Solution> {
       const auto corridor = conversions::from_msg(m);
       if (!corridor) return corridor.error();
-      const Query query{.duration_s = request->duration_s, .out_of_time = [&] {
-                          return !conversions::check_deadline(*request, node_.now_ns());
-                        }};
+      const Query query{.duration_s = request->duration_s,
+                        .out_of_time = [&] { return !check_deadline(*request, node_.now_ns()); }};
       return optimizer_.optimise(*corridor, request->start, request->goal, request->limits, query);
     });
     timing.compute_ns = compute_ns;
@@ -63,8 +63,8 @@ class TrajectoryOptimizerComponent : public Component {
                         {"start_excess_s", solution->certificate.start_excess_s}});
   }
 
-  void publish(const msg::Corridor& corridor, const conversions::PlanRequest& request,
-               const Solution& solution, std::int64_t compute_ns) {
+  void publish(const msg::Corridor& corridor, const PlanRequest& request, const Solution& solution,
+               std::int64_t compute_ns) {
     msg::BezierTrajectory m;
     m.request(corridor.request());
     m.implementation(std::string(optimizer_.implementation()));
@@ -77,14 +77,12 @@ class TrajectoryOptimizerComponent : public Component {
     }
     m.compute_ns(compute_ns);
     m.header(conversions::make_header(node_.now_ns()));
-    if (auto status = publisher_.publish(m); !status) {
-      reporter_.failed(corridor.request().id(), status.error());
-    }
+    reporter_.send(publisher_, m, request.id);
   }
 
   // A vehicle that flies looks where it was told to; one at rest where its last flight ended. The
   // tracker, which knows better, catches up.
-  Status add_yaw(const conversions::PlanRequest& request, const Trajectory& trajectory,
+  Status add_yaw(const PlanRequest& request, const Trajectory& trajectory,
                  msg::BezierTrajectory& m) {
     if (config_.yaw == "none") return success();
     YawRequest yaw{.mode = config_.yaw == "fixed"          ? YawMode::fixed

@@ -42,7 +42,7 @@ class PlanTimer {
 
   runtime::Node& node_;
   runtime::Publisher<goshawk_msgs::msg::PlanRequest> requests_;
-  conversions::PlanRequest request_;
+  PlanRequest request_;
   std::map<std::string, std::string> ready_;  // implementations by stage
   PlanSample sample_;
   std::int64_t reply_wire_ns_ = 0;

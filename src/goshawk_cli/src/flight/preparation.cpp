@@ -97,8 +97,14 @@ std::vector<std::string> launch_arguments(const FlyOptions& o, const Preparation
     set(fmt::format("simulator:start_{}_m", "xyz"[axis]),
         fmt::format("{:.17g}", p.tour.start_map[axis]));
   }
-  if (o.map.v_max_m_s) set("navigator:v_max_m_s", fmt::format("{}", *o.map.v_max_m_s));
-  if (o.map.a_max_m_s2) set("navigator:a_max_m_s2", fmt::format("{}", *o.map.a_max_m_s2));
+  for (const auto& [name, value] : {std::pair{"v_max_m_s", o.map.v_max_m_s},
+                                    {"a_max_m_s2", o.map.a_max_m_s2},
+                                    {"v_max_vertical_m_s", o.map.v_max_vertical_m_s},
+                                    {"a_max_vertical_m_s2", o.map.a_max_vertical_m_s2},
+                                    {"j_max_m_s3", o.map.j_max_m_s3}}) {
+    if (value) set(fmt::format("navigator:{}", name), fmt::format("{}", *value));
+  }
+  if (!o.map.norm.empty()) set("navigator:limit_norm", o.map.norm);
   for (const auto& parameter : o.stage_parameters) a.insert(a.end(), {"-p", parameter});
   return a;
 }

@@ -20,6 +20,10 @@ Limits MapOptions::limits() const {
   Limits limits;
   limits.v_max_m_s = v_max_m_s.value_or(limits.v_max_m_s);
   limits.a_max_m_s2 = a_max_m_s2.value_or(limits.a_max_m_s2);
+  limits.v_max_vertical_m_s = v_max_vertical_m_s.value_or(limits.v_max_vertical_m_s);
+  limits.a_max_vertical_m_s2 = a_max_vertical_m_s2.value_or(limits.a_max_vertical_m_s2);
+  limits.j_max_m_s3 = j_max_m_s3.value_or(limits.j_max_m_s3);
+  if (const auto known = from_word<LimitNorm>(norm)) limits.norm = *known;
   return limits;
 }
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "goshawk/core/certificate.hpp"
+#include "goshawk/core/limits.hpp"
 #include "goshawk/runtime/ros_args.hpp"
 
 namespace goshawk::cli {
@@ -15,7 +15,8 @@ struct MapOptions {
   std::string map;
   // Parameters of the map server as written, which checks them; empty: not given.
   std::string unknown, radius, margin, resolution;
-  std::optional<double> v_max_m_s, a_max_m_s2;
+  std::optional<double> v_max_m_s, a_max_m_s2, v_max_vertical_m_s, a_max_vertical_m_s2, j_max_m_s3;
+  std::string norm;  // a word of LimitNorm; empty: not given
   std::vector<std::string> params_files;
 
   /// As `--ros-args` would say it, so that one code reads and checks both.

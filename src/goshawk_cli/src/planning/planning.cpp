@@ -2,7 +2,7 @@
 
 #include "goshawk/map_server/map_file.hpp"
 #include "goshawk/runtime/component.hpp"
-#include "goshawk/runtime/stage.hpp"
+#include "goshawk/stage/intake.hpp"
 
 namespace goshawk::cli {
 namespace {
@@ -20,7 +20,7 @@ Status read_into(Config& config, const runtime::RosArgs& args, const char* node)
 // Runs one stage, notes its time, and hands its answer on.
 template <typename Work>
 auto run_stage(Plan& plan, std::string name, std::string implementation, Work&& work) {
-  auto [result, ns] = runtime::timed(std::forward<Work>(work));
+  auto [result, ns] = stage::timed(std::forward<Work>(work));
   plan.stages.push_back({std::move(name), std::move(implementation), double(ns) * 1e-3});
   return std::move(result);
 }

@@ -1,4 +1,4 @@
-#include "goshawk/recording/record.hpp"
+#include "goshawk/recording_tools/record.hpp"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-#include "goshawk/recording/replay.hpp"
+#include "goshawk/recording_tools/replay.hpp"
 
 #include <fmt/format.h>
 

@@ -11,6 +11,12 @@ namespace {
 
 constexpr double kCompletion_s = 1.0;  // who presses a key does not wait longer
 
+Words norms() {
+  Words words;
+  for (const auto word : all_words<LimitNorm>()) words.emplace_back(word);
+  return words;
+}
+
 }  // namespace
 
 void add_map_options(const Verb& verb, MapOptions& o) {
@@ -21,6 +27,14 @@ void add_map_options(const Verb& verb, MapOptions& o) {
   verb.completes(unknown, [](const Words&) { return Words{"occupied", "blocked", "free"}; });
   verb->add_option("--v-max", o.v_max_m_s, "[m/s] speed limit (default 2)");
   verb->add_option("--a-max", o.a_max_m_s2, "[m/s^2] acceleration limit (default 2)");
+  verb.choice("--norm", o.norm,
+              "what the limits bound: euclidean (default), per_axis or horizontal_vertical", norms());
+  verb->add_option("--v-max-vertical", o.v_max_vertical_m_s,
+                   "[m/s] vertical speed limit, with --norm horizontal_vertical (default --v-max)");
+  verb->add_option("--a-max-vertical", o.a_max_vertical_m_s2,
+                   "[m/s^2] vertical acceleration limit, with --norm horizontal_vertical (default "
+                   "--a-max)");
+  verb->add_option("--j-max", o.j_max_m_s3, "[m/s^3] limit of the jerk (default: none)");
   verb->add_option("--radius", o.radius, "[m] radius of the vehicle (default 0.15)");
   verb->add_option("--margin", o.margin, "[m] kept for the tracking error (default 0.05)");
   verb->add_option("--resolution", o.resolution,

@@ -4,9 +4,9 @@
 #include <memory>
 
 #include "goshawk/core/grid_geometry.hpp"
-#include "goshawk/runtime/stage_reporter.hpp"
+#include "goshawk/stage/stage_reporter.hpp"
 
-namespace goshawk::runtime {
+namespace goshawk::stage {
 
 /// Keeps a stage's copy of the map up to date from `map/voxels` and `map/voxels/updates`. A message
 /// that is wrong is reported on stage_report, and the grid before it stays. An update that does
@@ -16,7 +16,7 @@ class MapSubscription {
   using Callback = std::function<void(const std::shared_ptr<const VoxelGrid>&)>;
 
   /// @param on_map called with every new grid, in the node's thread
-  MapSubscription(Node& node, StageReporter& reporter, Callback on_map = {});
+  MapSubscription(runtime::Node& node, StageReporter& reporter, Callback on_map = {});
 
   /// @return the newest grid, or nullptr before the first
   const std::shared_ptr<const VoxelGrid>& grid() const { return grid_; }
@@ -31,4 +31,4 @@ class MapSubscription {
   std::shared_ptr<const VoxelGrid> grid_;
 };
 
-}  // namespace goshawk::runtime
+}  // namespace goshawk::stage

@@ -3,19 +3,19 @@
 #include <functional>
 #include <memory>
 
-#include "goshawk/simulator/vehicle_parameters.hpp"
+#include "goshawk/plant/vehicle_parameters.hpp"
 
-namespace goshawk::simulator {
+namespace goshawk::plant {
 
 /// Twelve states of the body and four of the rotors.
 struct PlantState {
   RigidBodyState body;
-  Eigen::Vector4d rotor_speed_rad_s = Eigen::Vector4d::Zero();
+  Vec4 rotor_speed_rad_s = Vec4::Zero();
 };
 
-/// What moves when rotors turn: all that Quadrotor's autopilot knows of a plant. One is our own
-/// (Plant), another is MuJoCo's (goshawk_mujoco); the autopilot, the wind and the sensors are the
-/// same for all. The same calls give the same bits.
+/// What moves when rotors turn: all that an autopilot knows of a simulated plant. goshawk_simulator
+/// has one, goshawk_mujoco another; the autopilot, the wind and the sensors are the same for both.
+/// The same calls give the same bits.
 class PlantModel {
  public:
   virtual ~PlantModel() = default;
@@ -23,8 +23,7 @@ class PlantModel {
   virtual void reset(const PlantState& state) = 0;
   /// @param rotor_command_rad_s wanted rotor speeds, constant over the step, like the wind
   /// @param wind_map [m/s] @param dt_s > 0
-  virtual void step(const Eigen::Vector4d& rotor_command_rad_s, const Vec3& wind_map,
-                    double dt_s) = 0;
+  virtual void step(const Vec4& rotor_command_rad_s, const Vec3& wind_map, double dt_s) = 0;
   virtual const PlantState& state() const = 0;
   /// [m/s^2] of the centre of mass, gravity and all forces included (zero at hover)
   virtual Vec3 acceleration_map(const Vec3& wind_map) const = 0;
@@ -35,7 +34,4 @@ class PlantModel {
 /// @pre parameters.check() ok
 using PlantFactory = std::function<std::unique_ptr<PlantModel>(const VehicleParameters&)>;
 
-/// Our own: Plant, by Runge and Kutta's fourth order.
-std::unique_ptr<PlantModel> make_rigid_body(const VehicleParameters& parameters);
-
-}  // namespace goshawk::simulator
+}  // namespace goshawk::plant

@@ -9,9 +9,9 @@
 namespace goshawk::recording {
 
 /// Reads the messages of a topic in any namespace ("path": of /path and of /uav1/path), in the
-/// order of their log times. Who calls it links goshawk_runtime, which knows the types.
-/// @return without those that are no such message; io_failed where the file cannot be read;
-/// invalid_input that names the topic where none is left
+/// order of their log times. Callers link goshawk_runtime, which knows the types.
+/// @return all that decode as Message; io_failed if the file cannot be read;
+/// invalid_input that names the topic if there is none
 template <typename Message>
 Result<std::vector<Message>> messages_of(Reader& reader, const std::string& topic) {
   ReadOptions options;

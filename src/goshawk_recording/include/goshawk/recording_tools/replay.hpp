@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "goshawk/recording/reader.hpp"
-#include "goshawk/recording/record.hpp"
+#include "goshawk/recording_tools/record.hpp"
 
 namespace goshawk::recording {
 

@@ -1,10 +1,10 @@
-#include "goshawk/simulator/vehicle_parameters.hpp"
+#include "goshawk/plant/vehicle_parameters.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
 #include <cstdio>
 
-namespace goshawk::simulator {
+namespace goshawk::plant {
 namespace {
 
 class Faults {
@@ -66,10 +66,6 @@ Eigen::Matrix3d VehicleParameters::inertia_kg_m2() const {
   return inertia;
 }
 
-double VehicleParameters::max_rotor_speed_rad_s() const {
-  return std::sqrt(max_motor_thrust_n / thrust_coefficient_n_s2);
-}
-
 Status VehicleParameters::check() const {
   Faults faults;
   const bool has_mass = faults.positive("mass_kg", mass_kg);
@@ -89,4 +85,4 @@ Status VehicleParameters::check() const {
   return faults.status();
 }
 
-}  // namespace goshawk::simulator
+}  // namespace goshawk::plant

@@ -1,19 +1,19 @@
-#include "goshawk/runtime/map_subscription.hpp"
+#include "goshawk/stage/map_subscription.hpp"
 
 #include "goshawk/conversions/grid.hpp"
 
-namespace goshawk::runtime {
+namespace goshawk::stage {
 
 namespace msg = goshawk_msgs::msg;
 
-MapSubscription::MapSubscription(Node& node, StageReporter& reporter, Callback on_map)
+MapSubscription::MapSubscription(runtime::Node& node, StageReporter& reporter, Callback on_map)
     : reporter_(reporter), on_map_(std::move(on_map)) {
   node.subscribe<msg::VoxelGrid>(
-      "map/voxels", Qos::latched(),
-      [this](const msg::VoxelGrid& m, const MessageInfo&) { on_grid(m); });
+      "map/voxels", runtime::Qos::latched(),
+      [this](const msg::VoxelGrid& m, const runtime::MessageInfo&) { on_grid(m); });
   node.subscribe<msg::VoxelGridUpdate>(
-      "map/voxels/updates", Qos::reliable_last(50),
-      [this](const msg::VoxelGridUpdate& m, const MessageInfo&) { on_update(m); });
+      "map/voxels/updates", runtime::Qos::reliable_last(50),
+      [this](const msg::VoxelGridUpdate& m, const runtime::MessageInfo&) { on_update(m); });
 }
 
 void MapSubscription::on_grid(const msg::VoxelGrid& m) {
@@ -36,4 +36,4 @@ void MapSubscription::take(VoxelGrid grid) {
   if (on_map_) on_map_(grid_);
 }
 
-}  // namespace goshawk::runtime
+}  // namespace goshawk::stage

@@ -1,15 +1,22 @@
-#include "goshawk/runtime/stage_reporter.hpp"
+#include "goshawk/stage/stage_reporter.hpp"
 
 #include <spdlog/logger.h>
 
 #include "goshawk/conversions/geometry.hpp"
 
-namespace goshawk::runtime {
+namespace goshawk::stage {
 
-StageReporter::StageReporter(Node& node, std::string implementation)
+namespace {
+
+constexpr std::int64_t kComplainEvery_ns = 1'000'000'000;
+
+}  // namespace
+
+StageReporter::StageReporter(runtime::Node& node, std::string implementation)
     : node_(node),
-      // Latched and deep, so that whoever comes late still learns which stages are ready.
-      publisher_(node.advertise<goshawk_msgs::msg::StageReport>("stage_report", Qos::latched(20))) {
+      // Latched and deep: nodes that start later still learn which stages are ready.
+      publisher_(node.advertise<goshawk_msgs::msg::StageReport>("stage_report",
+                                                                runtime::Qos::latched(20))) {
   report_.stage(node.name());
   report_.implementation(std::move(implementation));
 }
@@ -28,6 +35,14 @@ void StageReporter::fault(const Error& error) {
   publish(0, error.code, error.message, {}, {});
 }
 
+void StageReporter::complain(const Error& error) {
+  const std::int64_t since_ns = node_.now_ns() - complained_ns_;
+  // Simulated time begins anew with its simulation.
+  if (complained_ns_ != 0 && since_ns >= 0 && since_ns < kComplainEvery_ns) return;
+  complained_ns_ = node_.now_ns();
+  fault(error);
+}
+
 void StageReporter::answered(std::uint64_t request_id, Timing timing, Counters counters,
                              const std::string& note) {
   node_.log().debug("request {}: ok, {} us", request_id, timing.compute_ns / 1000);
@@ -37,6 +52,11 @@ void StageReporter::answered(std::uint64_t request_id, Timing timing, Counters c
 void StageReporter::failed(std::uint64_t request_id, const Error& error, Timing timing) {
   node_.log().warn("request {}: {}: {}", request_id, to_string(error.code), error.message);
   publish(request_id, error.code, error.message, timing, {});
+}
+
+void StageReporter::not_sent(std::uint64_t request_id, const Error& error) {
+  if (request_id == 0) return complain(error);
+  failed(request_id, error);
 }
 
 void StageReporter::publish(std::uint64_t request_id, ErrorCode code, const std::string& message,
@@ -59,4 +79,4 @@ void StageReporter::publish(std::uint64_t request_id, ErrorCode code, const std:
   }
 }
 
-}  // namespace goshawk::runtime
+}  // namespace goshawk::stage
