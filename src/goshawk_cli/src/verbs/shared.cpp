@@ -11,12 +11,6 @@ namespace {
 
 constexpr double kCompletion_s = 1.0;  // who presses a key does not wait longer
 
-Words norms() {
-  Words words;
-  for (const auto word : all_words<LimitNorm>()) words.emplace_back(word);
-  return words;
-}
-
 }  // namespace
 
 void add_map_options(const Verb& verb, MapOptions& o) {
@@ -28,7 +22,8 @@ void add_map_options(const Verb& verb, MapOptions& o) {
   verb->add_option("--v-max", o.v_max_m_s, "[m/s] speed limit (default 2)");
   verb->add_option("--a-max", o.a_max_m_s2, "[m/s^2] acceleration limit (default 2)");
   verb.choice("--norm", o.norm,
-              "what the limits bound: euclidean (default), per_axis or horizontal_vertical", norms());
+              "what the limits bound: euclidean (default), per_axis or horizontal_vertical",
+              all_words<LimitNorm>());
   verb->add_option("--v-max-vertical", o.v_max_vertical_m_s,
                    "[m/s] vertical speed limit, with --norm horizontal_vertical (default --v-max)");
   verb->add_option("--a-max-vertical", o.a_max_vertical_m_s2,
