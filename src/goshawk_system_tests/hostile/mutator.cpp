@@ -7,7 +7,6 @@
 namespace goshawk::hostile {
 namespace {
 
-constexpr std::size_t kHeader = 20;  // [byte] of an RTPS datagram
 constexpr int kMostChanges = 4;
 // What counts, lengths and numbers are compared with: limits, and one more or less.
 constexpr std::array<std::uint32_t, 16> kNumbers{

@@ -10,6 +10,8 @@ namespace goshawk::hostile {
 
 using Bytes = std::vector<std::byte>;
 
+constexpr std::size_t kHeader = 20;  // [byte] of an RTPS datagram
+
 /// Makes datagrams that a parser may trip over from good ones. The same seed makes the same ones.
 class Mutator {
  public:

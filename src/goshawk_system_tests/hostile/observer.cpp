@@ -6,7 +6,6 @@
 namespace goshawk::hostile {
 namespace {
 
-constexpr std::size_t kHeader = 20;  // [byte]
 constexpr std::size_t kMostKept = 4'000;
 constexpr std::size_t kLargest =
     4'096;  // [byte] of those kept: mutations of a map's payload say little
