@@ -1,7 +1,5 @@
 #include "planning/planning.hpp"
 
-#include <cstdio>
-
 #include "goshawk/map_server/map_file.hpp"
 #include "goshawk/runtime/component.hpp"
 #include "goshawk/stage/intake.hpp"
@@ -27,6 +25,16 @@ auto run_stage(Plan& plan, std::string name, std::string implementation, Work&& 
   return std::move(result);
 }
 
+Result<map_server::MapSource> made_map(const worlds::WorldSpec& spec) {
+  auto world = worlds::make_world(spec);
+  if (!world) return world.error();
+  map_server::MapSource source;
+  const Index3 size = world->geometry.size;
+  source.voxels = map_server::RawVoxels{world->geometry, std::move(world->occupied),
+                                        BitGrid(size, false, true)};
+  return source;
+}
+
 }  // namespace
 
 Result<PlanningConfig> PlanningConfig::read(const runtime::RosArgs& args) {
@@ -47,17 +55,17 @@ Result<PlanningConfig> PlanningConfig::read(const runtime::RosArgs& args) {
   return c;
 }
 
-Result<LoadedMap> load_map(const map_server::Config& config) {
-  auto source = map_server::load_map(config.map_file, map_server::load_options(config));
+Result<LoadedMap> load_map(const PlanningConfig& config, const worlds::WorldSpec& world) {
+  auto source = config.needs_world()
+                    ? made_map(world)
+                    : map_server::load_map(config.map.map_file, map_server::load_options(config.map));
   if (!source) return source.error();
-  for (const std::string& note : source->notes) {
-    std::fprintf(stderr, "%s: %s\n", config.map_file.c_str(), note.c_str());
-  }
-  auto raw = map_server::voxelize(*source, map_server::voxelize_options(config));
+  auto raw = map_server::voxelize(*source, map_server::voxelize_options(config.map));
   if (!raw) return raw.error();
-  auto grown = map_server::make_voxel_grid(*raw, map_server::growth(config), 1);
+  auto grown = map_server::make_voxel_grid(*raw, map_server::growth(config.map), 1);
   if (!grown) return grown.error();
-  return LoadedMap{*std::move(raw), std::make_shared<const VoxelGrid>(*std::move(grown))};
+  return LoadedMap{*std::move(raw), std::make_shared<const VoxelGrid>(*std::move(grown)),
+                   std::move(source->notes)};
 }
 
 Result<Planner> Planner::create(const PlanningConfig& config) {
