@@ -211,7 +211,7 @@ void measure_map_size(Report& report) {
     CorridorBuilder builder = builder_of({});
     Corridor corridor;
     const auto run = [&] {
-      if (!builder.build(*scene.grid, scene.paths_map[0], nullptr, corridor)) {
+      if (!builder.build(*scene.grid, scene.paths_map[0], corridor)) {
         throw std::runtime_error("the room's path is blocked");
       }
     };
