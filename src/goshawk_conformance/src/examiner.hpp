@@ -8,6 +8,7 @@
 #include "goshawk/conformance/conform.hpp"
 #include "goshawk/conversions/grid.hpp"
 #include "goshawk/conversions/plan.hpp"
+#include "goshawk/conversions/status.hpp"
 #include "goshawk/runtime/node.hpp"
 #include "recorded.hpp"
 #include "tally.hpp"
@@ -59,7 +60,7 @@ class Examiner {
   };
 
   void take(const msg::StageReport& m) {
-    if (m.stage() != options_.stage) return;
+    if (conversions::stage_role_of(m.stage()) != stage_role_of(options_.stage)) return;
     implementation_ = m.implementation();
     if (m.request_id() == 0 && m.code() == "ok") ready_ = true;
     if (m.request_id() == id_) answer_.reports.push_back(m);

@@ -1,9 +1,12 @@
 #include "tracker_examiner.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "goshawk/conversions/plan.hpp"
+#include "goshawk/conversions/status.hpp"
 #include "goshawk/conversions/vehicle.hpp"
 #include "world.hpp"
 
@@ -11,6 +14,7 @@ namespace goshawk::conformance {
 namespace {
 
 namespace msg = goshawk_msgs::msg;
+namespace mode = goshawk_msgs::msg::TrackingState_Constants;
 using runtime::MessageInfo;
 using runtime::Qos;
 
@@ -67,9 +71,9 @@ TrackerExaminer::TrackerExaminer(runtime::Context& context, const Options& optio
       odometry_(node_.advertise<nav_msgs::msg::Odometry>("odom", Qos::best_effort())),
       commits_(node_.advertise<Committed>("committed_trajectory", Qos::latched())) {
   vehicle_.position_map = Vec3(1.0, 2.0, 1.5);
-  node_.subscribe<msg::ThrustAttitude>(
+  node_.subscribe<msg::AttitudeSetpoint>(
       "command", Qos::best_effort(10),
-      [this](const msg::ThrustAttitude& m, const MessageInfo& i) { take(m, i.received_ns); });
+      [this](const msg::AttitudeSetpoint& m, const MessageInfo& i) { take(m, i.received_ns); });
   node_.subscribe<msg::TrackingState>("tracking_state", Qos::best_effort(),
                                       [this](const auto& m, const auto&) { state_ = m; });
 }
@@ -145,7 +149,7 @@ void TrackerExaminer::send_odometry() {
   (void)odometry_.publish(m);
 }
 
-void TrackerExaminer::take(const msg::ThrustAttitude& m, std::int64_t received_ns) {
+void TrackerExaminer::take(const msg::AttitudeSetpoint& m, std::int64_t received_ns) {
   ++commands_;
   if (commanded_ns_ > 0) {
     longest_gap_s_ = std::max(longest_gap_s_, double(received_ns - commanded_ns_) * 1e-9);
@@ -231,14 +235,14 @@ TrackerExaminer::Flight TrackerExaminer::fly(const Committed& committed) {
     const double time_s = double(moved_ns_ - begin_ns) * 1e-9;
     flight.worst_m =
         std::max(flight.worst_m, (wanted(committed, time_s) - vehicle_.position_map).norm());
-    flight.followed |= state_.mode() == "follow" && state_.request_id() == id_;
+    flight.followed |= state_.mode() == mode::MODE_FOLLOW && state_.request_id() == id_;
     return time_s > lasts_s + 0.5;
   });
   flight.left_m = (wanted(committed, lasts_s) - vehicle_.position_map).norm();
   flight.accepted = !listener_.reports().empty() && listener_.reports().front().code() == "ok";
   flight.said =
       listener_.reports().empty() ? "no report came" : listener_.reports().back().message();
-  flight.holds = state_.mode() == "hold";
+  flight.holds = state_.mode() == mode::MODE_HOLD;
   flight.gap_s = longest_gap_s_;
   return flight;
 }
@@ -260,16 +264,14 @@ void TrackerExaminer::examine_flight(const std::string& name,
   const auto add = [&](const char* what, bool passed, const std::string& detail) {
     report_.items.push_back({name + ": " + what, passed, detail});
   };
-  char text[120];
   add("accepts it", f.accepted, f.accepted ? "" : f.said);
-  std::snprintf(text, sizeof text, "largest error %.3f m; longest silence %.3f s", f.worst_m,
-                f.gap_s);
-  add("stays on it", f.worst_m <= kMostError_m, text);
-  std::snprintf(text, sizeof text, "%.3f m from its end, in mode %s", f.left_m,
-                state_.mode().c_str());
-  add("arrives and holds", f.arrived(), text);
-  add("says that it follows", f.followed,
-      f.followed ? "" : "tracking_state never named it in mode follow");
+  add("stays on it", f.worst_m <= kMostError_m,
+      fmt::format("largest error {:.3f} m; longest silence {:.3f} s", f.worst_m, f.gap_s));
+  add("arrives and holds", f.arrived(),
+      fmt::format("{:.3f} m from its end, in mode {}", f.left_m,
+                  conversions::tracking_mode_word(state_.mode())));
+  add("reports that it follows", f.followed,
+      f.followed ? "" : "tracking_state never named it in MODE_FOLLOW");
 }
 
 void TrackerExaminer::examine_bad() {

@@ -36,7 +36,7 @@ class TrackerExaminer {
   bool live(double timeout_s, const std::function<bool()>& done);
   void move();
   void send_odometry();
-  void take(const goshawk_msgs::msg::ThrustAttitude& m, std::int64_t received_ns);
+  void take(const goshawk_msgs::msg::AttitudeSetpoint& m, std::int64_t received_ns);
   void weigh();
   /// @return [ns] when it begins
   std::int64_t commit(Committed committed, double begins_in_s);
@@ -64,7 +64,7 @@ class TrackerExaminer {
   double weight_n_ = 0.0;      // what it hovers with; 0: not weighed yet, it is held
   std::int64_t moved_ns_ = 0;  // when the vehicle's state was true
   std::int64_t next_ns_ = 0;   // of the next odometry
-  std::optional<ThrustAttitude> command_;
+  std::optional<AttitudeSetpoint> command_;
   int commands_ = 0;
   std::int64_t commanded_ns_ = 0;  // when the newest came
   double longest_gap_s_ = 0.0;     // of odometry or commands, since a flight began

@@ -29,7 +29,7 @@ class ForeignSearch {
       : node_(node),
         fault_(fault),
         search_(*path_search::PathSearch::create({})),
-        reporter_(node, "foreign"),
+        reporter_(node, StageRole::path_search, "foreign"),
         publisher_(node.advertise<msg::Path>("path", Qos::reliable_last())),
         map_(node, reporter_, [this](const auto& grid) { search_.set_map(grid); }) {
     node.subscribe<msg::PlanRequest>("plan_request", Qos::reliable_last(),

@@ -38,7 +38,7 @@ class ForeignMap {
       : node_(node),
         fault_(fault),
         map_(empty_map()),
-        reporter_(node, "foreign"),
+        reporter_(node, StageRole::map_server, "foreign"),
         wholes_(node.advertise<msg::VoxelGrid>(
             "map/voxels", fault == MapFault::only_once ? Qos::reliable_last() : Qos::latched())),
         updates_(

@@ -280,9 +280,9 @@ TEST(OdometryMessage, WithAWrongFrameOrQuaternionIsRefused) {
 }
 
 TEST(CommandMessage, WithNegativeOrMissingThrustIsRefused) {
-  goshawk_msgs::msg::ThrustAttitude m;
+  goshawk_msgs::msg::AttitudeSetpoint m;
   m.header(make_header(0));
-  fill_msg(ThrustAttitude{9.81, Eigen::Quaterniond::Identity(), Vec3::Zero()}, m);
+  fill_msg(AttitudeSetpoint{9.81, Eigen::Quaterniond::Identity(), Vec3::Zero()}, m);
   ASSERT_TRUE(from_msg(m).ok());
   m.thrust(-1.0);
   EXPECT_EQ(from_msg(m).code(), ErrorCode::invalid_input);

@@ -29,9 +29,9 @@ int say(const CommonOptions& common, const Error& error) {
   return exit_status(error.code);
 }
 
-// Asks, and hands the answer to `tell`; what goes wrong is said.
+// Asks, and hands the answer to `tell`; prints what goes wrong.
 template <typename Tell>
-int asked(const CommonOptions& common, const std::string& node, const std::string& verb,
+int asked(const CommonOptions& common, const std::string& node, ParameterVerb verb,
           const std::vector<std::pair<std::string, std::string>>& parameters, Tell&& tell) {
   const auto name = full_topic_name(node);
   if (!name) return say(common, fail(ErrorCode::invalid_input, "no name of a node: " + node));
@@ -44,7 +44,7 @@ int asked(const CommonOptions& common, const std::string& node, const std::strin
     for (const auto& p : *list) {
       json["parameters"].push_back(to_json(p.description));
       json["parameters"].back()["value"] = p.description.value;
-      if (verb == "set") json["parameters"].back()["old_value"] = p.old_value;
+      if (verb == ParameterVerb::set) json["parameters"].back()["old_value"] = p.old_value;
     }
     std::cout << to_line(json) << std::endl;
   } else {
@@ -91,16 +91,17 @@ Json to_json(const runtime::ParameterDescription& p) {
 
 int get_parameters(const CommonOptions& common, const std::string& node,
                    const std::vector<std::string>& names) {
-  return asked(common, node, "get", without_values(names), [&](const auto&, const List& list) {
-    for (const auto& p : list) {
-      if (names.size() != 1) std::cout << p.description.name << ": ";
-      std::cout << p.description.value << "\n";
-    }
-  });
+  return asked(common, node, ParameterVerb::get, without_values(names),
+               [&](const auto&, const List& list) {
+                 for (const auto& p : list) {
+                   if (names.size() != 1) std::cout << p.description.name << ": ";
+                   std::cout << p.description.value << "\n";
+                 }
+               });
 }
 
 int list_parameters(const CommonOptions& common, const std::string& node) {
-  return asked(common, node, "get", {}, [](const auto&, const List& list) {
+  return asked(common, node, ParameterVerb::get, {}, [](const auto&, const List& list) {
     std::size_t names = 0, values = 0;
     for (const auto& p : list) {
       names = std::max(names, p.description.name.size());
@@ -118,13 +119,14 @@ int list_parameters(const CommonOptions& common, const std::string& node) {
 
 int describe_parameters(const CommonOptions& common, const std::string& node,
                         const std::vector<std::string>& names) {
-  return asked(common, node, "get", without_values(names), [](const auto&, const List& list) {
-    for (const auto& p : list) {
-      print_description(p.description);
-      std::cout << "  now: " << shown(p.description, p.description.value) << "\n";
-    }
-    if (list.empty()) std::cout << "(no parameters)\n";
-  });
+  return asked(common, node, ParameterVerb::get, without_values(names),
+               [](const auto&, const List& list) {
+                 for (const auto& p : list) {
+                   print_description(p.description);
+                   std::cout << "  now: " << shown(p.description, p.description.value) << "\n";
+                 }
+                 if (list.empty()) std::cout << "(no parameters)\n";
+               });
 }
 
 int set_parameters(const CommonOptions& common, const std::string& node,
@@ -139,17 +141,18 @@ int set_parameters(const CommonOptions& common, const std::string& node,
   for (std::size_t i = 0; i < assignments.size(); i += 2) {
     wanted.emplace_back(assignments[i], assignments[i + 1]);
   }
-  return asked(common, node, "set", wanted, [](const std::string& name, const List& list) {
-    for (const auto& [d, old] : list) {
-      std::cout << d.name << ": " << shown(d, old) << " -> " << shown(d, d.value)
-                << (d.unit.empty() ? "" : " " + d.unit) << "\n";
-    }
-    std::cout << "holds until the node ends; goshawk param dump " << name << " keeps it\n";
-  });
+  return asked(
+      common, node, ParameterVerb::set, wanted, [](const std::string& name, const List& list) {
+        for (const auto& [d, old] : list) {
+          std::cout << d.name << ": " << shown(d, old) << " -> " << shown(d, d.value)
+                    << (d.unit.empty() ? "" : " " + d.unit) << "\n";
+        }
+        std::cout << "holds until the node ends; goshawk param dump " << name << " keeps it\n";
+      });
 }
 
 int dump_parameters(const CommonOptions& common, const std::string& node) {
-  return asked(common, node, "get", {}, [](const std::string& name, const List& list) {
+  return asked(common, node, ParameterVerb::get, {}, [](const std::string& name, const List& list) {
     std::cout << name << ":\n  ros__parameters:" << (list.empty() ? " {}" : "") << "\n";
     for (const auto& [d, old] : list) {
       // JSON's quotes are YAML's too.

@@ -14,9 +14,10 @@ struct EchoOptions {
   bool short_arrays = false;
 };
 
-void print(nlohmann::ordered_json message, const EchoOptions& options, bool as_json) {
+void print(const Type& type, nlohmann::ordered_json message, const EchoOptions& options,
+           bool as_json) {
   if (options.short_arrays) shorten_arrays(message);
-  std::cout << (as_json ? to_line(message) + "\n" : to_yaml(message) + "---\n") << std::flush;
+  std::cout << (as_json ? to_line(message) + "\n" : to_yaml(type, message) + "---\n") << std::flush;
 }
 
 int echo(const CommonOptions& common, EchoOptions options) {
@@ -34,7 +35,7 @@ int echo(const CommonOptions& common, EchoOptions options) {
       [&](const RawMessage& message) {
         auto json = cdr_to_json(*type, message.bytes);
         if (json) {
-          print(*std::move(json), options, common.json);
+          print(*type, *std::move(json), options, common.json);
         } else {
           std::cerr << "goshawk: " << json.error().message << std::endl;
         }

@@ -16,11 +16,11 @@ constexpr double kSwitchSlack_s = 0.02;
 // Failures that pass by themselves are tried again after this time.
 constexpr double kRetryDelay_s = 0.2;
 
-constexpr std::array<std::string_view, 3> kPlanningStages{"path_search", "corridor_builder",
-                                                          "trajectory_optimizer"};
+constexpr std::array kPlanningStages{StageRole::path_search, StageRole::corridor_builder,
+                                     StageRole::trajectory_optimizer};
 
 // The stage after the last one that answered.
-std::string_view next_stage(std::string_view last) {
+StageRole next_stage(StageRole last) {
   const auto at = std::ranges::find(kPlanningStages, last);
   if (at == kPlanningStages.end()) return kPlanningStages.front();
   return at + 1 == kPlanningStages.end() ? kPlanningStages.back() : *(at + 1);
@@ -95,9 +95,9 @@ void Navigator::on_trajectory(std::uint64_t id, Trajectory trajectory, std::int6
   enter(State::flying);
 }
 
-void Navigator::on_report(std::uint64_t id, std::string_view stage, const Error& outcome,
+void Navigator::on_report(std::uint64_t id, StageRole stage, const Error& outcome,
                           std::int64_t now_ns) {
-  if (stage == "tracker") {
+  if (stage == StageRole::tracker) {
     if (flight_ && id == flight_->id && outcome.code != ErrorCode::ok) {
       tracker_failed(outcome, now_ns);
     }
@@ -107,7 +107,7 @@ void Navigator::on_report(std::uint64_t id, std::string_view stage, const Error&
   if (outcome.code == ErrorCode::ok) {
     open_->last_stage = stage;
   } else {
-    const Error reason{outcome.code, std::string(stage) + ": " + outcome.message};
+    const Error reason{outcome.code, std::string(to_string(stage)) + ": " + outcome.message};
     passes_by_itself(outcome.code) ? plan_again(reason, now_ns) : give_up(reason);
   }
 }
@@ -149,7 +149,8 @@ void Navigator::plan(std::int64_t now_ns) {
 void Navigator::ask(const FlatState& start, std::optional<std::int64_t> switch_ns,
                     std::int64_t now_ns) {
   ++attempts_;
-  open_ = Open{next_id_++, now_ns, switch_ns, ""};
+  newest_id_ = next_id_++;
+  open_ = Open{.id = newest_id_, .asked_ns = now_ns, .switch_ns = switch_ns};
   FlatState goal;
   goal.position = goal_.position_map;
   FlatState from = start;
@@ -204,7 +205,7 @@ void Navigator::check_arrival(std::int64_t now_ns) {
 void Navigator::check_silence(std::int64_t now_ns) {
   if (!open_ || now_ns - open_->asked_ns < to_ns(config_.plan_timeout_s)) return;
   plan_again(
-      fail(ErrorCode::stage_silent, std::string(next_stage(open_->last_stage)) +
+      fail(ErrorCode::stage_silent, std::string(to_string(next_stage(open_->last_stage))) +
                                         " did not answer request " + std::to_string(open_->id) +
                                         " within " + std::to_string(config_.plan_timeout_s) +
                                         " s: is it running, in this domain and namespace?"),
@@ -221,8 +222,11 @@ bool Navigator::odometry_is_fresh(std::int64_t now_ns) const {
 
 void Navigator::enter(State state, Error reason) {
   state_ = state;
-  const std::uint64_t id = open_ ? open_->id : flight_ ? flight_->id : 0;
-  orders_.push_back(StateOrder{state, id, goal_.position_map, std::move(reason)});
+  orders_.push_back(StateOrder{.state = state,
+                               .id = newest_id_,
+                               .flown_id = flight_ ? flight_->id : 0,
+                               .goal_map = goal_.position_map,
+                               .reason = std::move(reason)});
 }
 
 }  // namespace goshawk::navigator

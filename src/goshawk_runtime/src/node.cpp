@@ -173,6 +173,21 @@ int Node::Impl::take_some(const Node& node, Subscription& s) {
   return kMostAtOnce;
 }
 
+bool Node::Impl::serve(const Node& node) {
+  bool any = false;
+  more = false;
+  // By index: a callback may subscribe.
+  for (std::size_t i = 0; i < subscriptions.size() && !stopping; ++i) {
+    const int taken = take_some(node, *subscriptions[i]);
+    any = any || taken > 0;
+    more = more || taken == kMostAtOnce;
+  }
+  for (auto& callback : std::exchange(deferred, {})) {
+    if (!stopping) call(node, "deferred work", callback);
+  }
+  return any;
+}
+
 Node::Node(Context& context, std::string name, RosArgs args, std::shared_ptr<const Clock> clock)
     : name_(std::move(name)),
       args_(std::move(args)),
@@ -279,6 +294,10 @@ void Node::every(double period_s, std::function<void()> callback) {
   impl_->timers.push_back({period_ns, impl_->timer_now_ns() + period_ns, std::move(callback)});
 }
 
+void Node::later(std::function<void()> callback) {
+  impl_->deferred.push_back(std::move(callback));
+}
+
 void Node::serve(std::unique_ptr<LiveParameters> parameters) {
   // Asked for twice, as a component may: the newest counts.
   if (impl_->parameters != nullptr) return impl_->parameters->replace(std::move(parameters));
@@ -294,12 +313,8 @@ void Node::spin_some(double timeout_s) {
   if (!impl_->time.followers.empty()) return impl_->lead(*this);
   impl_->wait(clamped(timeout_s));
   if (impl_->stopping) return;
-  impl_->more = false;
   impl_->run_due_timers(*this);
-  // By index: a callback may subscribe.
-  for (std::size_t i = 0; i < impl_->subscriptions.size() && !impl_->stopping; ++i) {
-    if (impl_->take_some(*this, *impl_->subscriptions[i]) == kMostAtOnce) impl_->more = true;
-  }
+  impl_->serve(*this);
 }
 
 void Node::stop() {

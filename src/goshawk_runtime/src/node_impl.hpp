@@ -86,6 +86,7 @@ struct Node::Impl {
   std::vector<std::unique_ptr<Subscription>> subscriptions;
   std::deque<Timer> timers;  // a callback may add one: elements stay where they are
   bool more = false;         // the last pass left messages behind
+  std::vector<std::function<void()>> deferred;  // for the end of the pass
   SimulatedTime time;
   std::unique_ptr<ParameterService> parameters;
 
@@ -107,6 +108,9 @@ struct Node::Impl {
   void run_due_timers(const Node& node);
   /// @return messages taken, at most so many that a flood starves nobody
   int take_some(const Node& node, Subscription& subscription);
+  /// One pass: some messages of every subscription, then what was deferred.
+  /// @return whether there were any
+  bool serve(const Node& node);
   /// Takes until nothing is left.
   void drain(const Node& node);
   void follow(const Node& node, double timeout_s);

@@ -10,6 +10,7 @@ namespace goshawk::runtime {
 namespace {
 
 using goshawk_msgs::msg::Parameter;
+namespace verb = goshawk_msgs::msg::ParameterRequest_Constants;
 
 constexpr std::size_t kMostGiven = 16;  // answers kept: no more clients than that ask at once
 constexpr std::size_t kMostParameters = 1000;  // in one request
@@ -30,22 +31,24 @@ bool has_control_characters(const std::string& text) {
 Status check(const goshawk_msgs::msg::ParameterRequest& request) {
   if (request.id() == 0) return malformed("has id 0: count from 1");
   if (request.client().empty() || has_control_characters(request.client())) {
-    return malformed("names no client: say who asks");
+    return malformed("names no client");
   }
-  if (request.verb() != "get" && request.verb() != "set") {
-    return malformed("has a verb that is neither get nor set");
+  if (request.verb() != verb::VERB_GET && request.verb() != verb::VERB_SET) {
+    return malformed("has a verb that is neither VERB_GET nor VERB_SET");
   }
   const auto& list = request.parameters();
   if (list.size() > kMostParameters) return malformed("names too many parameters at once");
-  if (request.verb() == "set" && list.empty()) return malformed("sets nothing: name a parameter");
+  if (request.verb() == verb::VERB_SET && list.empty())
+    return malformed("sets nothing: name a parameter");
   for (const Parameter& p : list) {
     if (p.name().empty()) return malformed("holds a parameter without a name");
     if (has_control_characters(p.name() + p.value())) {
       return malformed("holds a control character");
     }
-    if (p.name().size() > kLongestName) return malformed("holds a name of endless length");
+    if (p.name().size() > kLongestName)
+      return malformed("has a parameter name longer than 256 bytes");
     if (p.value().size() > kLongestValue) {
-      return malformed("holds a value of endless length for " + p.name());
+      return malformed("has a value longer than 4096 bytes for " + p.name());
     }
   }
   return success();
@@ -81,7 +84,7 @@ void ParameterService::on_request(const Request& request) {
   a.id(request.id());
   a.client(request.client());
   a.node(node_.full_name());
-  a.verb(request.verb().substr(0, kLongestName));
+  a.verb(request.verb());
   if (const auto listed = answer(request)) {
     a.code(std::string(to_string(ErrorCode::ok)));
     a.parameters(*listed);
@@ -98,7 +101,7 @@ void ParameterService::on_request(const Request& request) {
 
 Result<ParameterService::Listed> ParameterService::answer(const Request& request) {
   if (auto status = check(request); !status) return status.error();
-  return request.verb() == "get" ? get(request) : set(request);
+  return request.verb() == verb::VERB_GET ? get(request) : set(request);
 }
 
 Result<ParameterService::Listed> ParameterService::get(const Request& request) const {

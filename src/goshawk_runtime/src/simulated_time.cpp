@@ -85,11 +85,7 @@ void Node::take_turn(const void* message) {
 }
 
 void Node::Impl::drain(const Node& node) {
-  for (bool any = true; any && !stopping;) {
-    any = false;
-    for (std::size_t i = 0; i < subscriptions.size() && !stopping; ++i) {
-      if (take_some(node, *subscriptions[i]) > 0) any = true;
-    }
+  while (!stopping && serve(node)) {
   }
 }
 

@@ -3,7 +3,7 @@
 namespace goshawk::simulator {
 
 Wrench attitude_control(const AttitudeGains& gains, const Eigen::Matrix3d& inertia_kg_m2,
-                        const RigidBodyState& state, const ThrustAttitude& wanted) {
+                        const RigidBodyState& state, const AttitudeSetpoint& wanted) {
   Eigen::Quaterniond left = state.q_map_base.conjugate() * wanted.q_map_base;
   if (left.w() < 0.0) left.coeffs() = -left.coeffs();
   const Vec3 angle_error = 2.0 * left.vec();

@@ -21,7 +21,7 @@ Wind::Parameters wind_of(const Config& c) {
           .seed = std::uint64_t(c.gust_seed)};
 }
 
-Status check(const ThrustAttitude& command) {
+Status check(const AttitudeSetpoint& command) {
   const auto refuse = [](const std::string& why) {
     return fail(ErrorCode::invalid_input, "command refused: " + why);
   };
@@ -94,7 +94,7 @@ Status Quadrotor::reset(const Vec3& position_map, double yaw_rad) {
   return success();
 }
 
-Status Quadrotor::command(const ThrustAttitude& command) {
+Status Quadrotor::command(const AttitudeSetpoint& command) {
   if (auto status = check(command); !status) return status;
   command_ = command;
   command_.q_map_base.normalize();
@@ -142,7 +142,7 @@ void Quadrotor::learn_disturbance(const Vec3& last_velocity_map) {
   disturbance_map_ += kDisturbanceBandwidth_rad_s * kStep_s * (felt - disturbance_map_);
 }
 
-ThrustAttitude Quadrotor::onboard_target() {
+AttitudeSetpoint Quadrotor::onboard_target() {
   watch_commands();
   if (control_ == Control::commanded) return command_;
   if (control_ == Control::landing) {

@@ -41,6 +41,24 @@ CYCLONE = ("<CycloneDDS><Domain><General><Interfaces><NetworkInterface name='lo'
            "</CycloneDDS>")
 
 
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(SOURCE / "idl"))
+import idl_to_schema  # noqa: E402
+
+
+def words(struct, field):
+    """The values of a field that have constants: {0: "idle", 3: "arrived"} of NavigatorState's state."""
+    structs = idl_to_schema.parse_file(str(SOURCE / "idl" / "goshawk_msgs.idl"))
+    fields = next(s.fields for s in structs if s.name.endswith("/" + struct))
+    constants = next(f.constants for f in fields if f.name == field)
+    return {c.value: c.name[len(field) + 1:].lower() for c in constants}
+
+
+def node_of(report):
+    """The name of the node that sent a stage_report, without its namespace."""
+    return report["node"].rsplit("/", 1)[-1]
+
+
 def data_file(test, relative):
     """A file of the shared data; where it is absent the test is skipped, and says so."""
     folders = [os.environ.get("GOSHAWK_DATA"), SOURCE.parent / "shared" / "data"]

@@ -1,13 +1,17 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 
+#include "flight/launch_process.hpp"
 #include "folders.hpp"
 #include "goshawk/conversions/plan.hpp"
+#include "goshawk/conversions/status.hpp"
 #include "goshawk/runtime/node.hpp"
-#include "flight/launch_process.hpp"
 #include "planning/map_options.hpp"
 #include "verbs.hpp"
 
@@ -87,19 +91,21 @@ class PlanTimer {
 
  private:
   void on_report(const msg::StageReport& m) {
-    if (m.request_id() == 0 && m.code() == "ok") ready_[m.stage()] = m.implementation();
+    const std::string stage(to_string(conversions::stage_role_of(m.stage())));
+    if (m.request_id() == 0 && m.code() == "ok") ready_.insert(stage);
     if (m.request_id() != request_.id) return;
     if (m.code() == "ok") {
-      sample_.stages[m.stage()] = {m.compute_ns(), m.wire_ns()};
+      sample_.stages[stage] = {m.compute_ns(), m.wire_ns()};
     } else {
-      failure_ = fail(ErrorCode::invalid_input, m.stage() + ": " + m.code() + ": " + m.message());
+      failure_ =
+          fail(ErrorCode::invalid_input, fmt::format("{}: {}: {}", stage, m.code(), m.message()));
     }
   }
 
   Node& node_;
   Publisher<msg::PlanRequest> requests_;
   conversions::PlanRequest request_;
-  std::map<std::string, std::string> ready_;
+  std::set<std::string> ready_;
   Sample sample_;
   std::int64_t final_wire_ns_ = 0;
   std::optional<Error> failure_;

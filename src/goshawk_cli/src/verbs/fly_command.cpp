@@ -1,6 +1,8 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <ctime>
@@ -8,14 +10,15 @@
 #include <functional>
 
 #include "flight/flight_folder.hpp"
-#include "verbs/fly_options.hpp"
-#include "goshawk/map_server/octree.hpp"
-#include "goshawk/worlds/world.hpp"
 #include "flight/launch_process.hpp"
-#include "planning/plan_json.hpp"
 #include "flight/random_tour.hpp"
 #include "flight/recorder_process.hpp"
+#include "goshawk/conversions/status.hpp"
+#include "goshawk/map_server/octree.hpp"
+#include "goshawk/worlds/world.hpp"
+#include "planning/plan_json.hpp"
 #include "verbs.hpp"
+#include "verbs/fly_options.hpp"
 
 namespace goshawk::cli {
 
@@ -46,6 +49,8 @@ void FlyOptions::add_to(CLI::App& app) {
 }
 
 namespace {
+
+namespace state = goshawk_msgs::msg::NavigatorState_Constants;
 
 constexpr double kAcquaintance_s = 0.5;  // discovery among those whom we found takes no longer
 
@@ -214,14 +219,17 @@ class Flight {
   }
 
   Status wait_until_ready() {
-    static constexpr const char* kNeeded[] = {
-        "map_server", "path_search", "corridor_builder", "trajectory_optimizer",
-        "navigator",  "tracker",     "simulator"};
+    static constexpr StageRole kNeeded[] = {
+        StageRole::map_server,       StageRole::path_search,
+        StageRole::corridor_builder, StageRole::trajectory_optimizer,
+        StageRole::navigator,        StageRole::tracker,
+        StageRole::vehicle};
     Status lives = success();
     const auto missing = [&] {
       std::string names;
-      for (const char* stage : kNeeded) {
-        if (!record_.is_ready(stage)) names += (names.empty() ? "" : ", ") + std::string(stage);
+      for (const StageRole stage : kNeeded) {
+        if (record_.is_ready(stage)) continue;
+        names += fmt::format("{}{}", names.empty() ? "" : ", ", to_string(stage));
       }
       return names;
     };
@@ -259,36 +267,40 @@ class Flight {
         said_ns = record_.now_ns();
         say_progress(goal, number, double(said_ns - begin_ns) * 1e-9);
       }
-      const auto& state = record_.navigator().state();
-      return !lives || state == "arrived" || state == "failed";
+      const auto& answer = record_.navigator();
+      return !lives || (answer && (answer->state() == state::STATE_ARRIVED ||
+                                   answer->state() == state::STATE_FAILED));
     });
-    const auto& state = record_.navigator();
-    leg.arrived = lives.ok() && answered && state.state() == "arrived";
-    leg.request_id = state.request_id();
+    const auto answer = record_.navigator().value_or(goshawk_msgs::msg::NavigatorState());
+    leg.arrived = lives.ok() && answered && answer.state() == state::STATE_ARRIVED;
+    leg.request_id = answer.request_id();
     leg.flight_time_s = double(record_.now_ns() - begin_ns) * 1e-9;
     if (!lives) {
       leg.code = to_string(lives.code());
       leg.message = lives.error().message;
     } else if (!answered) {
       leg.code = to_string(ErrorCode::deadline_exceeded);
-      leg.message = "not arrived within " + std::to_string(options_.timeout_s) +
-                    " s; navigator is " + (state.state().empty() ? "silent" : state.state());
+      leg.message = fmt::format("not arrived within {} s; the navigator is {}", options_.timeout_s,
+                                state_word("silent"));
     } else {
-      leg.code = state.code();
-      leg.message = state.message();
+      leg.code = answer.code();
+      leg.message = answer.message();
     }
     return leg;
   }
 
+  /// @param none without an answer from the navigator
+  std::string_view state_word(std::string_view none) const {
+    const auto& answer = record_.navigator();
+    return answer ? conversions::navigator_state_word(answer->state()) : none;
+  }
+
   void say_progress(const Vec3& goal, std::size_t number, double elapsed_s) const {
-    const auto& state = record_.navigator().state();
-    char line[160];
-    std::snprintf(line, sizeof line,
-                  "leg %zu of %zu: %-8s %5.1f s, %6.2f m to go, tracking error %5.1f mm", number,
-                  p_.tour.goals_map.size(), state.empty() ? "asked" : state.c_str(), elapsed_s,
-                  (record_.flown().back().state.position_map - goal).norm(),
-                  record_.errors().empty() ? 0.0 : 1e3 * record_.errors().back().position_error_m);
-    progress(line);
+    progress(fmt::format(
+        "leg {} of {}: {:<8} {:5.1f} s, {:6.2f} m to go, tracking error {:5.1f} mm", number,
+        p_.tour.goals_map.size(), state_word("asked"), elapsed_s,
+        (record_.flown().back().state.position_map - goal).norm(),
+        record_.errors().empty() ? 0.0 : 1e3 * record_.errors().back().position_error_m));
   }
 
   Result<flight_check::Verdict> judge() const {

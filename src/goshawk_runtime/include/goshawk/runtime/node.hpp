@@ -136,6 +136,10 @@ class Node {
   /// call that comes late is not made up for.
   void every(double period_s, std::function<void()> callback);
 
+  /// Calls back once, in the node's thread, after the messages that are already here were served:
+  /// for work that should see the newest of them first. Call it from a callback.
+  void later(std::function<void()> callback);
+
   /// Serves callbacks until stop(). An exception in a callback is a bug: it is logged with the
   /// topic's name, and ends the process, so that supervision restarts it.
   void spin();

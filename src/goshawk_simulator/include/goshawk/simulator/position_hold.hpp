@@ -22,14 +22,14 @@ class PositionHold {
   void lower(double step_m, double floor_map_m);
 
   /// @param disturbance_map [m/s^2] what wind and drag do to the vehicle; compensated
-  ThrustAttitude step(const RigidBodyState& state, const Vec3& disturbance_map = Vec3::Zero());
+  AttitudeSetpoint step(const RigidBodyState& state, const Vec3& disturbance_map = Vec3::Zero());
 
   bool braking() const { return braking_; }
   /// [m] where it hovers; only the place of engagement while braking
   const Vec3& position_map() const { return position_map_; }
 
  private:
-  ThrustAttitude thrust_along(const Vec3& acceleration_map) const;
+  AttitudeSetpoint thrust_along(const Vec3& acceleration_map) const;
 
   double mass_kg_;
   double max_thrust_n_;

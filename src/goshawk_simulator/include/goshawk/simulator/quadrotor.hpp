@@ -49,7 +49,7 @@ class Quadrotor {
   /// and its timeout runs on. Thrust and torque beyond the motors' power are cut by the mixer.
   /// @return invalid_input: a number is not finite, thrust is negative, the quaternion is not of
   /// unit length (1e-3), or a body rate is above 100 rad/s
-  Status command(const ThrustAttitude& command);
+  Status command(const AttitudeSetpoint& command);
 
   /// What a landing looks at; needs_map() tells when. Where a newer one shows the way down blocked,
   /// a landing stops, and the vehicle hovers where it is. @pre grid->check() ok
@@ -82,7 +82,7 @@ class Quadrotor {
  private:
   Quadrotor(const Config& config, const plant::PlantFactory& make_plant);
   void step();
-  ThrustAttitude onboard_target();
+  AttitudeSetpoint onboard_target();
   void learn_disturbance(const Vec3& last_velocity_map);
   void watch_commands();
   void try_to_land();
@@ -97,7 +97,7 @@ class Quadrotor {
   LandingGuard guard_;
   Vec3 disturbance_map_ = Vec3::Zero();  // [m/s^2] as its inertial sensors tell, smoothed
   Error not_landing_{ErrorCode::ok, ""};
-  ThrustAttitude command_;
+  AttitudeSetpoint command_;
   Control control_ = Control::failsafe;
   std::int64_t time_ns_ = 0;
   std::int64_t remainder_ns_ = 0;

@@ -1,0 +1,104 @@
+#include "goshawk/stage/intake.hpp"
+
+#include <gmock/gmock.h>
+
+#include "two_nodes.hpp"
+
+namespace goshawk::stage {
+namespace {
+
+namespace msg = goshawk_msgs::msg;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr std::int64_t kSecond = 1'000'000'000;
+
+TEST(SupersededRequests, NameTheNewerRequest) {
+  SupersededRequests superseded;
+  EXPECT_TRUE(superseded.check(1));
+  superseded.note(2, 1);
+  superseded.note(3, 0);  // supersedes none
+  superseded.note(4, 4);  // nor can a request supersede itself
+  const Status status = superseded.check(1);
+  EXPECT_EQ(status.code(), ErrorCode::cancelled);
+  EXPECT_THAT(status.error().message, AllOf(HasSubstr("request 1 "), HasSubstr("request 2 ")));
+  for (const std::uint64_t id : {2, 3, 4}) EXPECT_TRUE(superseded.check(id)) << id;
+}
+
+TEST(SupersededRequests, ForgetTheOldestOnesFirst) {
+  SupersededRequests superseded;
+  for (std::uint64_t id = 1; id <= 1000; ++id) superseded.note(id + 1, id);
+  EXPECT_FALSE(superseded.check(1000));
+  EXPECT_FALSE(superseded.check(990));
+  EXPECT_TRUE(superseded.check(1));
+}
+
+class Requests : public testing::Test {
+ protected:
+  Requests() {
+    nodes_.clock->set(10 * kSecond);
+    nodes_.other.subscribe<msg::StageReport>(
+        "stage_report", runtime::Qos::latched(20),
+        [this](const msg::StageReport& m, const auto&) { reports_.push_back(m); });
+  }
+
+  msg::PlanRequest request(std::uint64_t id, double deadline_s = 0.0) const {
+    return conversions::to_msg(conversions::PlanRequest{.id = id,
+                                                        .stamp_ns = nodes_.clock->now_ns(),
+                                                        .limits = {1.0, 1.0},
+                                                        .deadline_s = deadline_s});
+  }
+
+  stage_test::TwoNodes nodes_;
+  std::vector<msg::StageReport> reports_;
+  StageReporter reporter_{nodes_.stage, StageRole::path_search, "method"};
+  std::vector<std::uint64_t> taken_;
+};
+
+TEST_F(Requests, ThatAreGoodAreHandedOutInOrderAndTheOthersAreReported) {
+  const Intake<msg::PlanRequest> intake(
+      nodes_.stage, reporter_, "plan_request",
+      [&](const msg::PlanRequest& m, const conversions::PlanRequest& r, Timing timing) {
+        EXPECT_EQ(m.id(), r.id);
+        EXPECT_EQ(timing.wire_ns, 2 * kSecond);
+        taken_.push_back(r.id);
+      });
+  const auto requests =
+      nodes_.other.advertise<msg::PlanRequest>("plan_request", runtime::Qos::reliable_last());
+  ASSERT_TRUE(nodes_.spin_until([&] { return requests.matched() > 0; }));
+  auto bad = request(2);
+  bad.limits().v_max(-1.0);
+  ASSERT_TRUE(requests.publish(request(1)));
+  ASSERT_TRUE(requests.publish(bad));
+  ASSERT_TRUE(requests.publish(request(3, 1.0)));  // too late two seconds on
+  ASSERT_TRUE(requests.publish(request(4)));
+  nodes_.clock->set(12 * kSecond);
+  ASSERT_TRUE(nodes_.spin_until([&] { return taken_.size() + reports_.size() == 4; }));
+  EXPECT_THAT(taken_, ElementsAre(1, 4));
+  ASSERT_EQ(reports_.size(), 2U);
+  EXPECT_EQ(reports_[0].request_id(), 2U);
+  EXPECT_EQ(reports_[0].code(), "invalid_limits");
+  EXPECT_EQ(reports_[1].request_id(), 3U);
+  EXPECT_EQ(reports_[1].code(), "deadline_exceeded");
+}
+
+TEST_F(Requests, InsideOtherMessagesAreTakenInWithThem) {
+  const Intake<msg::Path> intake(
+      nodes_.stage, reporter_, "path",
+      [&](const msg::Path& m, const conversions::PlanRequest& r, Timing) {
+        EXPECT_EQ(m.implementation(), "foreign");
+        taken_.push_back(r.id);
+      });
+  const auto paths = nodes_.other.advertise<msg::Path>("path", runtime::Qos::reliable_last());
+  ASSERT_TRUE(nodes_.spin_until([&] { return paths.matched() > 0; }));
+  msg::Path path;
+  path.request(request(5));
+  path.implementation("foreign");
+  ASSERT_TRUE(paths.publish(path));
+  ASSERT_TRUE(nodes_.spin_until([&] { return !taken_.empty(); }));
+  EXPECT_THAT(taken_, ElementsAre(5));
+}
+
+}  // namespace
+}  // namespace goshawk::stage
