@@ -32,8 +32,8 @@ Json polytope_json(const Polytope& p) {
   Json A = Json::array();
   Json b = Json::array();
   for (int i = 0; i < p.faces(); ++i) {
-    A.push_back(to_json(Vec3(p.A.row(i))));
-    b.push_back(p.b[i]);
+    A.push_back(to_json(p.half_spaces[std::size_t(i)].normal));
+    b.push_back(p.half_spaces[std::size_t(i)].offset_m);
   }
   return {{"A", A}, {"b", b}};
 }
@@ -90,9 +90,9 @@ Json certificate_to_json(const Certificate& c) {
   return {{"position_m", to_json(c.position_m)},
           {"velocity_m_s", to_json(c.velocity_m_s)},
           {"acceleration_m_s2", to_json(c.acceleration_m_s2)},
-          {"joint_position_m", to_json(c.joint_position_m)},
-          {"joint_velocity_m_s", to_json(c.joint_velocity_m_s)},
-          {"joint_acceleration_m_s2", to_json(c.joint_acceleration_m_s2)},
+          {"joint_position_m", to_json(c.continuity_position_m)},
+          {"joint_velocity_m_s", to_json(c.continuity_velocity_m_s)},
+          {"joint_acceleration_m_s2", to_json(c.continuity_acceleration_m_s2)},
           {"start_m", to_json(c.start_m)},
           {"goal_m", to_json(c.goal_m)},
           {"jerk_m_s3", to_json(c.jerk_m_s3)},
