@@ -126,7 +126,7 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   if (options.quick) feed_options.count = std::min(feed_options.count, 50);
   try {
-    feed_options.domain = goshawk::runtime::hold_private_domain();
+    feed_options.domain = goshawk::runtime::hold_private_domain().value();
     return run(feed_options, against, options);
   } catch (const std::exception& e) {
     std::fprintf(stderr, "goshawk bench stage: %s\n", e.what());

@@ -146,7 +146,7 @@ TEST(Conform, StageThatAnswersOtherwiseTheSecondTimeIsNamed) {
 }
 
 TEST(Conform, NobodyThereIsAnError) {
-  const auto ours = join(runtime::hold_private_domain());
+  const auto ours = join(runtime::hold_private_domain().value());
   const auto report = conform(*ours, {.stage = "path_search", .ready_timeout_s = 0.3});
   ASSERT_FALSE(report.ok());
   EXPECT_EQ(report.code(), ErrorCode::stage_silent);

@@ -195,7 +195,7 @@ TEST(ConformMapServer, RecordedCloudsMustChangeTheMapOrBeRefused) {
 }
 
 TEST(ConformMapServer, ARecordingWithoutCloudsIsASentence) {
-  const auto context = join(runtime::hold_private_domain());
+  const auto context = join(runtime::hold_private_domain().value());
   const std::string file = testing::TempDir() + "conform_nothing.mcap";
   EXPECT_TRUE(recording::Writer::create(*recording::create_file(file, true))->close());
   for (const std::string stage : {"map_server", "tracker", "path_search"}) {

@@ -248,7 +248,7 @@ TEST_F(Verbs, SayWhenNoMessageComes) {
 
 // Nobody is in this domain.
 int empty_domain() {
-  static const int held = goshawk::runtime::hold_private_domain();
+  static const int held = goshawk::runtime::hold_private_domain().value();
   return held;
 }
 

@@ -126,7 +126,7 @@ void expect_to_land_only_where_the_map_allows(SilentPilot& pilot) {
 }
 
 std::unique_ptr<runtime::Context> make_context() {
-  static const int domain = runtime::hold_private_domain();
+  static const int domain = runtime::hold_private_domain().value();
   runtime::ContextOptions options;
   options.domain = domain;
   setenv("ROS_DOMAIN_ID", std::to_string(domain).c_str(), 1);

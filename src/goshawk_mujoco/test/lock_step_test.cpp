@@ -98,7 +98,7 @@ struct Flown {
 
 Flown fly(const std::string& plant, const std::vector<std::string>& parameters) {
   runtime::ContextOptions options;
-  static const int domain = runtime::hold_private_domain();
+  static const int domain = runtime::hold_private_domain().value();
   options.domain = domain;
   setenv("ROS_DOMAIN_ID", std::to_string(options.domain).c_str(), 1);
   std::vector<std::string> plant_call{plant + ":simulator",

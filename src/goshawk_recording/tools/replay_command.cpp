@@ -2,6 +2,7 @@
 #include <cstdio>
 
 #include "goshawk/recording/commands.hpp"
+#include "goshawk/recording_tools/layout.hpp"
 #include "player.hpp"
 #include "print_messages.hpp"
 #include "qos_profiles.hpp"
@@ -203,6 +204,10 @@ int replay(const Options& o) {
   }
   const auto channels = choose(*reader, o);
   if (!channels) return report_failure("replay", channels.error(), o.json, kNotDone);
+  if (auto same = check_layout(*reader, *channels); !same) {
+    const Error error = fail(same.code(), o.file + ": " + same.error().message);
+    return report_failure("replay", error, o.json, kNotDone);
+  }
   if (o.print) {
     const auto printed = print_messages(*reader, *channels);
     return printed ? kDone : report_failure("replay", printed.error(), o.json, kNotDone);

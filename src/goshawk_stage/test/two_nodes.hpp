@@ -10,7 +10,7 @@
 namespace goshawk::stage_test {
 
 inline std::unique_ptr<runtime::Context> join() {
-  static const int domain = runtime::hold_private_domain();
+  static const int domain = runtime::hold_private_domain().value();
   runtime::ContextOptions options;
   options.domain = domain;
   auto context = runtime::Context::create(options);

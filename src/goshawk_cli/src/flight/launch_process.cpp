@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <signal.h>
 #include <spawn.h>
-#include <sys/file.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -12,6 +11,7 @@
 
 #include "folders.hpp"
 #include "goshawk/runtime/context.hpp"
+#include "goshawk/runtime/private_domain.hpp"
 
 namespace goshawk::cli {
 namespace {
@@ -37,21 +37,6 @@ std::vector<char*> pointers_to(std::vector<std::string>& words) {
   return pointers;
 }
 
-// Below the kernel's ephemeral ports (32768 and up), above the domains that people choose.
-constexpr int kFirstPrivateDomain = 20;
-constexpr int kPrivateDomains = 80;
-
-// Takes the lock of a domain; the kernel gives it back when this process ends, however it does.
-bool hold_domain(int domain) {
-  const auto name = "goshawk-domain-" + std::to_string(domain) + ".lock";
-  const auto file = std::filesystem::temp_directory_path() / name;
-  const int descriptor = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-  if (descriptor < 0) return false;
-  if (flock(descriptor, LOCK_EX | LOCK_NB) == 0) return true;
-  close(descriptor);
-  return false;
-}
-
 }  // namespace
 
 Result<int> private_domain() {
@@ -59,12 +44,7 @@ Result<int> private_domain() {
   if (!options) return options.error();
   const char* set = std::getenv("ROS_DOMAIN_ID");
   if (set != nullptr && *set != '\0') return options->domain;
-  for (int i = 0; i < kPrivateDomains; ++i) {
-    const int domain = kFirstPrivateDomain + (int(getpid()) + i) % kPrivateDomains;
-    if (hold_domain(domain)) return domain;
-  }
-  return fail(ErrorCode::io_failed,
-              "all private domains are in use: stop other flights, or set ROS_DOMAIN_ID");
+  return runtime::hold_private_domain();
 }
 
 Result<LaunchProcess> LaunchProcess::start(const Arguments& launch_arguments, int domain,

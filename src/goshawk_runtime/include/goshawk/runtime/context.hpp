@@ -14,8 +14,9 @@ struct ContextOptions {
   std::string interfaces = "loopback";  // "loopback", "all", or IPv4 addresses with commas
   std::vector<std::string> node_names;  // full names, for `goshawk node list`
 
-  /// ROS_DOMAIN_ID and GOSHAWK_INTERFACES, where they are set.
-  /// @return invalid_parameter for a domain that is no number from 0 to 232
+  /// ROS_DOMAIN_ID and GOSHAWK_INTERFACES, if they are set.
+  /// @return invalid_parameter for a domain that is not a number from 0 to 232, or for empty
+  /// interfaces
   static Result<ContextOptions> from_environment();
 };
 
@@ -32,20 +33,20 @@ struct ParticipantInfo {
   std::string guid_prefix;
   std::string name;
   std::vector<std::string> nodes;
-  std::string version = "";  // of Goshawk; empty: another program, or one that does not tell
+  std::string version = "";  // of Goshawk; empty: another program, or one that does not say
 };
 
 /// One DDS participant: a process' membership in a domain.
 ///
 /// An XML profile file (FASTRTPS_DEFAULT_PROFILES_FILE) with a default participant profile
-/// decides alone about transports; else they are UDP on the chosen interfaces, by default on
+/// decides alone about transports; otherwise they are UDP on the chosen interfaces, by default on
 /// loopback only, found without multicast.
 class Context {
  public:
   struct Impl;
 
-  /// @return invalid_parameter for a domain or an interface that is not there, io_failed with a
-  /// sentence where the domain cannot be joined
+  /// @return invalid_parameter for a domain or an interface that does not exist, io_failed if the
+  /// domain cannot be joined
   static Result<std::unique_ptr<Context>> create(const ContextOptions& options);
   ~Context();
 
