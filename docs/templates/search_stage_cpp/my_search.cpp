@@ -62,7 +62,7 @@ class MySearch {
 
  private:
   // A request that is valid, in time and not superseded.
-  void on(const msg::PlanRequest& m, const conversions::PlanRequest& request, Timing timing) {
+  void on(const msg::PlanRequest& m, const PlanRequest& request, Timing timing) {
     if (map_.grid() == nullptr) {
       return reporter_.failed(m.id(), fail(ErrorCode::no_map, "no map has come yet"), timing);
     }

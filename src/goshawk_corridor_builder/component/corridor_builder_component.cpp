@@ -17,7 +17,7 @@ namespace msg = goshawk_msgs::msg;
 
 /// Before the raw map of a version has come, its grown one serves: the same safety, less room.
 Config on_grown_grid(Config config) {
-  config.margin = "grown_grid";
+  config.margin = Margin::grown_grid;
   return config;
 }
 
@@ -39,7 +39,7 @@ class CorridorBuilderComponent : public Component {
         publisher_(node.advertise<msg::Corridor>("corridor", Qos::reliable_last())),
         map_(node, reporter_),
         paths_(node, reporter_, "path", std::bind_front(&CorridorBuilderComponent::on_path, this)) {
-    if (config_.margin == "sphere") subscribe_raw();
+    if (config_.margin == Margin::sphere) subscribe_raw();
     reporter_.ready("builds corridors with " + std::string(builder_.implementation()));
   }
 
@@ -68,7 +68,7 @@ class CorridorBuilderComponent : public Component {
     return builder_.build(grid, waypoints, &raw);
   }
 
-  void on_path(const msg::Path& m, const conversions::PlanRequest& request, Timing timing) {
+  void on_path(const msg::Path& m, const PlanRequest& request, Timing timing) {
     if (auto status = check_map(m); !status) {
       return reporter_.failed(request.id, status.error(), timing);
     }

@@ -61,11 +61,10 @@ nav_msgs::msg::Path path_line(const Trajectory& trajectory, std::int64_t stamp_n
   return path;
 }
 
-visualization_msgs::msg::MarkerArray corridor_markers(
-    const conversions::ReceivedTrajectory& received, std::int64_t stamp_ns) {
+visualization_msgs::msg::MarkerArray corridor_markers(const CommittedTrajectory& committed) {
   visualization_msgs::msg::MarkerArray array;
   Marker edges;
-  edges.header(conversions::make_header(stamp_ns));
+  edges.header(conversions::make_header(committed.start_time_ns()));
   edges.ns("corridor");
   edges.type(kLineList);
   edges.pose().orientation().w(1.0);
@@ -74,7 +73,7 @@ visualization_msgs::msg::MarkerArray corridor_markers(
   edges.color().g(0.6F);
   edges.color().b(0.9F);
   edges.color().a(0.8F);
-  for (const auto& polytope : received.polytopes) add_edges(polytope, edges.points());
+  for (const auto& polytope : committed.flown_polytopes()) add_edges(polytope, edges.points());
   array.markers().push_back(std::move(edges));
   return array;
 }

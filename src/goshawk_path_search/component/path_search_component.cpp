@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <functional>
 
 #include "goshawk/path_search/config.hpp"
@@ -26,13 +28,13 @@ class PathSearchComponent : public Component {
       : node_(node),
         config_(node.parameters<Config>([this](const Config& c) { return reconfigure(c); })),
         search_(make_search(config_)),
-        reporter_(node, StageRole::path_search, config_.planner),
+        reporter_(node, StageRole::path_search, std::string(search_.planner_name())),
         publisher_(node.advertise<msg::Path>("path", Qos::reliable_last())),
         map_(node, reporter_, [this](const auto& grid) { search_.set_map(grid); }),
         requests_(node, reporter_, "plan_request",
                   std::bind_front(&PathSearchComponent::on_request, this)) {
-    reporter_.ready("searches with " + std::string(search_.planner_name()) + ", " +
-                    config_.corner_rule);
+    reporter_.ready(
+        fmt::format("searches with {}, {}", search_.planner_name(), to_word(config_.corner_rule)));
   }
 
  private:
@@ -43,8 +45,7 @@ class PathSearchComponent : public Component {
     return success();
   }
 
-  void on_request(const msg::PlanRequest& m, const conversions::PlanRequest& request,
-                  Timing timing) {
+  void on_request(const msg::PlanRequest& m, const PlanRequest& request, Timing timing) {
     std::vector<Vec3> goals_map = {request.goal.position};
     goals_map.insert(goals_map.end(), request.other_goals_map.begin(),
                      request.other_goals_map.end());
@@ -58,7 +59,7 @@ class PathSearchComponent : public Component {
   }
 
   /// What is left of the request's deadline.
-  StopSignal stop_of(const conversions::PlanRequest& request) const {
+  StopSignal stop_of(const PlanRequest& request) const {
     if (request.deadline_s == 0.0) return {};
     return StopSignal::after(request.deadline_s - double(node_.now_ns() - request.stamp_ns) * 1e-9);
   }

@@ -24,12 +24,11 @@ Status SupersededRequests::check(std::uint64_t id) const {
               fmt::format("request {} was dropped: request {} supersedes it", id, at->second));
 }
 
-std::optional<conversions::PlanRequest> open_request(const goshawk_msgs::msg::PlanRequest& m,
-                                                     std::int64_t now_ns, StageReporter& reporter,
-                                                     Timing timing,
-                                                     const SupersededRequests& superseded) {
+std::optional<PlanRequest> open_request(const goshawk_msgs::msg::PlanRequest& m,
+                                        std::int64_t now_ns, StageReporter& reporter, Timing timing,
+                                        const SupersededRequests& superseded) {
   auto request = conversions::from_msg(m);
-  Status status = request ? conversions::check_deadline(*request, now_ns) : request.error();
+  Status status = request ? check_deadline(*request, now_ns) : request.error();
   if (status) status = superseded.check(m.id());
   if (status) return *std::move(request);
   reporter.failed(m.id(), status.error(), timing);

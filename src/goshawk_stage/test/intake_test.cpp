@@ -44,10 +44,10 @@ class Requests : public testing::Test {
   }
 
   msg::PlanRequest request(std::uint64_t id, double deadline_s = 0.0) const {
-    return conversions::to_msg(conversions::PlanRequest{.id = id,
-                                                        .stamp_ns = nodes_.clock->now_ns(),
-                                                        .limits = {1.0, 1.0},
-                                                        .deadline_s = deadline_s});
+    return conversions::to_msg(PlanRequest{.id = id,
+                                           .stamp_ns = nodes_.clock->now_ns(),
+                                           .limits = {1.0, 1.0},
+                                           .deadline_s = deadline_s});
   }
 
   stage_test::TwoNodes nodes_;
@@ -59,7 +59,7 @@ class Requests : public testing::Test {
 TEST_F(Requests, ThatAreGoodAreHandedOutInOrderAndTheOthersAreReported) {
   const Intake<msg::PlanRequest> intake(
       nodes_.stage, reporter_, "plan_request",
-      [&](const msg::PlanRequest& m, const conversions::PlanRequest& r, Timing timing) {
+      [&](const msg::PlanRequest& m, const PlanRequest& r, Timing timing) {
         EXPECT_EQ(m.id(), r.id);
         EXPECT_EQ(timing.wire_ns, 2 * kSecond);
         taken_.push_back(r.id);
@@ -83,13 +83,53 @@ TEST_F(Requests, ThatAreGoodAreHandedOutInOrderAndTheOthersAreReported) {
   EXPECT_EQ(reports_[1].code(), "deadline_exceeded");
 }
 
-TEST_F(Requests, InsideOtherMessagesAreTakenInWithThem) {
+TEST_F(Requests, ThatANewerOneSupersedesAreDropped) {
+  const Intake<msg::PlanRequest> intake(
+      nodes_.stage, reporter_, "plan_request",
+      [&](const msg::PlanRequest&, const PlanRequest& r, Timing) { taken_.push_back(r.id); });
+  const auto requests =
+      nodes_.other.advertise<msg::PlanRequest>("plan_request", runtime::Qos::reliable_last());
+  ASSERT_TRUE(nodes_.spin_until([&] { return requests.matched() > 0; }));
+  ASSERT_TRUE(requests.publish(request(1)));
+  ASSERT_TRUE(requests.publish(request(2)));
+  auto newer = request(3);
+  newer.supersedes(1);
+  ASSERT_TRUE(requests.publish(newer));
+  ASSERT_TRUE(requests.wait_acknowledged(10.0));  // all are there before the stage looks
+  ASSERT_TRUE(nodes_.spin_until([&] { return taken_.size() + reports_.size() == 3; }));
+  EXPECT_THAT(taken_, ElementsAre(2, 3));
+  ASSERT_EQ(reports_.size(), 1U);
+  EXPECT_EQ(reports_[0].request_id(), 1U);
+  EXPECT_EQ(reports_[0].code(), "cancelled");
+  EXPECT_THAT(reports_[0].message(), HasSubstr("request 3 supersedes it"));
+}
+
+TEST_F(Requests, OfLaterStagesAreDroppedToo) {
   const Intake<msg::Path> intake(
       nodes_.stage, reporter_, "path",
-      [&](const msg::Path& m, const conversions::PlanRequest& r, Timing) {
-        EXPECT_EQ(m.implementation(), "foreign");
-        taken_.push_back(r.id);
-      });
+      [&](const msg::Path&, const PlanRequest& r, Timing) { taken_.push_back(r.id); });
+  const auto paths = nodes_.other.advertise<msg::Path>("path", runtime::Qos::reliable_last());
+  const auto requests =
+      nodes_.other.advertise<msg::PlanRequest>("plan_request", runtime::Qos::reliable_last());
+  ASSERT_TRUE(nodes_.spin_until([&] { return paths.matched() > 0 && requests.matched() > 0; }));
+  msg::Path path;
+  path.request(request(1));
+  ASSERT_TRUE(paths.publish(path));
+  auto newer = request(2);
+  newer.supersedes(1);
+  ASSERT_TRUE(requests.publish(newer));
+  ASSERT_TRUE(paths.wait_acknowledged(10.0) && requests.wait_acknowledged(10.0));
+  ASSERT_TRUE(nodes_.spin_until([&] { return taken_.size() + reports_.size() == 1; }));
+  EXPECT_THAT(taken_, testing::IsEmpty());
+  EXPECT_EQ(reports_.at(0).code(), "cancelled");
+}
+
+TEST_F(Requests, InsideOtherMessagesAreTakenInWithThem) {
+  const Intake<msg::Path> intake(nodes_.stage, reporter_, "path",
+                                 [&](const msg::Path& m, const PlanRequest& r, Timing) {
+                                   EXPECT_EQ(m.implementation(), "foreign");
+                                   taken_.push_back(r.id);
+                                 });
   const auto paths = nodes_.other.advertise<msg::Path>("path", runtime::Qos::reliable_last());
   ASSERT_TRUE(nodes_.spin_until([&] { return paths.matched() > 0; }));
   msg::Path path;

@@ -32,15 +32,6 @@ struct RequestRecord {
   std::map<StageRole, goshawk_msgs::msg::StageReport> reports;  // newest of each stage
 };
 
-/// A trajectory as it was committed.
-struct CommittedRecord {
-  std::uint64_t request_id = 0;
-  std::int64_t start_ns = 0;
-  Limits limits;
-  Trajectory trajectory;
-  std::vector<Polytope> polytopes;
-};
-
 /// Listens to a whole flight, sends goals, and keeps what came.
 class FlightRecorder {
  public:
@@ -56,7 +47,7 @@ class FlightRecorder {
   const std::optional<goshawk_msgs::msg::NavigatorState>& navigator() const { return navigator_; }
   const std::vector<FlownState>& flown() const { return flown_; }
   const std::vector<TrackedError>& errors() const { return errors_; }
-  const std::vector<CommittedRecord>& committed() const { return committed_; }
+  const std::vector<CommittedTrajectory>& committed() const { return committed_; }
   const std::map<std::uint64_t, RequestRecord>& requests() const { return requests_; }
   std::int64_t now_ns() const { return node_.now_ns(); }
   int goal_readers() const { return goals_.matched(); }
@@ -72,7 +63,7 @@ class FlightRecorder {
   std::vector<FlownState> flown_;
   bool knows_truth_ = false;
   std::vector<TrackedError> errors_;
-  std::vector<CommittedRecord> committed_;
+  std::vector<CommittedTrajectory> committed_;
   std::map<std::uint64_t, RequestRecord> requests_;
 };
 

@@ -44,22 +44,20 @@ class SupersededRequests {
 
 /// Takes a request in. @return the request if it is valid, within its deadline and not superseded;
 /// otherwise nothing, and the failure has been reported
-std::optional<conversions::PlanRequest> open_request(const goshawk_msgs::msg::PlanRequest& m,
-                                                     std::int64_t now_ns, StageReporter& reporter,
-                                                     Timing timing,
-                                                     const SupersededRequests& superseded = {});
+std::optional<PlanRequest> open_request(const goshawk_msgs::msg::PlanRequest& m,
+                                        std::int64_t now_ns, StageReporter& reporter, Timing timing,
+                                        const SupersededRequests& superseded = {});
 
 /// The input of a planning stage: requests on one topic, alone or inside another message. It hears
 /// of every newer request before it hands out an older one, so that obsolete work is dropped.
 ///
 ///     Intake<msg::Path> paths(node, reporter, "path",
-///         [this](const msg::Path& m, const conversions::PlanRequest& request, Timing timing)
+///         [this](const msg::Path& m, const PlanRequest& request, Timing timing)
 ///         {...});
 template <typename Message>
 class Intake {
  public:
-  using Handler =
-      std::function<void(const Message&, const conversions::PlanRequest&, Timing timing)>;
+  using Handler = std::function<void(const Message&, const PlanRequest&, Timing timing)>;
 
   /// @param handler called in the node's thread with each request that is worth an answer
   Intake(runtime::Node& node, StageReporter& reporter, std::string_view topic, Handler handler)
@@ -90,11 +88,7 @@ class Intake {
     }
   }
 
-  void note(const auto& request) {
-    if constexpr (requires { request.supersedes(); }) {
-      superseded_.note(request.id(), request.supersedes());
-    }
-  }
+  void note(const Request& request) { superseded_.note(request.id(), request.supersedes()); }
 
   void serve() {
     for (const auto& [message, wire_ns] : std::exchange(waiting_, {})) {
