@@ -5,8 +5,8 @@
 #include <unistd.h>
 
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
-#include <fmt/format.h>
 #include <fastrtps/utils/IPLocator.h>
+#include <fmt/format.h>
 #include <algorithm>
 #include <charconv>
 #include <cstdlib>
@@ -136,10 +136,11 @@ Result<std::unique_ptr<Context>> Context::create(const ContextOptions& options) 
       factory->create_participant(dds::DomainId_t(options.domain), participant_qos(options),
                                   &impl->listener, dds::StatusMask::none());
   if (impl->participant == nullptr) {
-    return fail(ErrorCode::io_failed,
-                fmt::format("cannot join domain {} on interfaces '{}': are its UDP ports (7400 + 250 "
-                            "x domain and up) taken, is the interface up, is the profile file right?",
-                            options.domain, options.interfaces));
+    return fail(
+        ErrorCode::io_failed,
+        fmt::format("cannot join domain {} on interfaces '{}': are its UDP ports (7400 + 250 "
+                    "x domain and up) taken, is the interface up, is the profile file right?",
+                    options.domain, options.interfaces));
   }
   impl->publisher = impl->participant->create_publisher(dds::PUBLISHER_QOS_DEFAULT);
   impl->subscriber = impl->participant->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT);

@@ -12,7 +12,7 @@ namespace {
 using goshawk_msgs::msg::Parameter;
 namespace verb = goshawk_msgs::msg::ParameterRequest_Constants;
 
-constexpr std::size_t kMostGiven = 16;  // answers kept: no more clients than that ask at once
+constexpr std::size_t kMostGiven = 16;         // answers kept for clients that ask again
 constexpr std::size_t kMostParameters = 1000;  // in one request
 constexpr std::size_t kLongestName = 256;      // [byte] of clients and parameters
 constexpr std::size_t kLongestValue = 4096;    // [byte]
@@ -22,12 +22,12 @@ Error malformed(const std::string& why) {
   return fail(ErrorCode::invalid_input, "the request " + why);
 }
 
-// What ends up in logs must not look like another line of them.
+// Text that is logged must not look like another line of the log.
 bool has_control_characters(const std::string& text) {
   return std::ranges::any_of(text, [](unsigned char c) { return c < 0x20 || c == 0x7f; });
 }
 
-// The form alone; what it asks for is another matter.
+// Checks the form only.
 Status check(const goshawk_msgs::msg::ParameterRequest& request) {
   if (request.id() == 0) return malformed("has id 0: count from 1");
   if (request.client().empty() || has_control_characters(request.client())) {
@@ -94,7 +94,7 @@ void ParameterService::on_request(const Request& request) {
   }
   a.header().stamp(conversions::to_stamp(node_.now_ns()));
   publish(a);
-  if (request.id() == 0) return;  // none that could be told from another
+  if (request.id() == 0) return;  // cannot be told from another
   given_.push_back(std::move(a));
   if (given_.size() > kMostGiven) given_.pop_front();
 }

@@ -41,8 +41,7 @@ bool is_empty(int domain) {
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_port = htons(std::uint16_t(kFirstPort + kPortsOfDomain * domain));
-  const bool bound =
-      bind(probe, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+  const bool bound = bind(probe, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
   close(probe);
   return bound;
 }

@@ -139,7 +139,7 @@ TEST_F(ParameterTopics, WhatIsWrongIsASentenceAndChangesNothing) {
   EXPECT_THAT(refusal(request(++id, VERB_SET, {{"speed_m_s", "3"}, {"radius_m", "1"}})),
               AllOf(HasSubstr("invalid_parameter"), HasSubstr("at start only")));
   EXPECT_THAT(refusal(request(++id, VERB_SET, {{"count", "1"}, {"count", "2"}})),
-              HasSubstr("stands there twice"));
+              HasSubstr("is specified twice"));
   EXPECT_THAT(refusal(request(++id, VERB_SET)),
               HasSubstr("invalid_input: the request sets nothing"));
   EXPECT_THAT(refusal(request(++id, "forget")), HasSubstr("neither get nor set"));
