@@ -30,11 +30,11 @@ TEST(PrivateDomain, IsFreeAgainWhenItsProcessIsKilled) {
   ASSERT_GE(child, 0);
   if (child == 0) {
     const int domain = hold_private_domain().value();
-    (void)!write(to_parent[1], &domain, sizeof domain);
+    (void)!::write(to_parent[1], &domain, sizeof domain);
     while (true) pause();
   }
   int domain = 0;
-  ASSERT_EQ(read(to_parent[0], &domain, sizeof domain), ssize_t(sizeof domain));
+  ASSERT_EQ(::read(to_parent[0], &domain, sizeof domain), ssize_t(sizeof domain));
   EXPECT_FALSE(hold_domain(domain));
   kill(child, SIGKILL);
   waitpid(child, nullptr, 0);
