@@ -1,4 +1,4 @@
-#include "text.hpp"
+#include "goshawk/introspection/text.hpp"
 
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
@@ -108,7 +108,8 @@ Result<Json> parse_json_or_yaml(const std::string& text) {
   try {
     return from_yaml(YAML::Load(text), 0);
   } catch (const YAML::Exception& e) {
-    return fail(ErrorCode::invalid_input, "'" + text + "' is neither JSON nor YAML: " + e.what());
+    return fail(ErrorCode::invalid_input,
+                fmt::format("'{}' is neither JSON nor YAML: {}", text, e.what()));
   }
 }
 

@@ -3,9 +3,9 @@
 #include <gmock/gmock.h>
 
 #include "goshawk/introspection/codec.hpp"
-#include "goshawk/recording/commands.hpp"
 #include "goshawk/recording/writer.hpp"
 #include "goshawk/recording_tools/messages.hpp"
+#include "goshawk/recording_tools/replay.hpp"
 #include "goshawk_msgs.h"
 #include "memory_sink.hpp"
 #include "nav_msgs.h"
@@ -127,13 +127,18 @@ TEST_F(OldRecording, GivesTheMessagesThatDidNotChange) {
 }
 
 TEST_F(OldRecording, IsPlayedOnlyWithoutTheTopicsThatChanged) {
-  testing::internal::CaptureStderr();
-  EXPECT_EQ(replay_command({file_.path(), "--print"}), 1);
-  EXPECT_THAT(testing::internal::GetCapturedStderr(),
+  const Reader reader = open();
+  ReplayOptions options;
+  options.file = file_.path();
+  const auto say = [](const std::string&) {};
+  const auto refused = choose_channels(reader, options, say);
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message,
               AllOf(HasSubstr(file_.path()), HasSubstr("another version of Goshawk")));
-  testing::internal::CaptureStdout();
-  EXPECT_EQ(replay_command({file_.path(), "--print", "--topics", "/odom"}), 0);
-  EXPECT_THAT(testing::internal::GetCapturedStdout(), HasSubstr("base_link"));
+  options.topics = {"/odom"};
+  const auto chosen = choose_channels(reader, options, say);
+  ASSERT_TRUE(chosen) << chosen.error().message;
+  EXPECT_EQ(chosen->size(), 1U);
 }
 
 }  // namespace
