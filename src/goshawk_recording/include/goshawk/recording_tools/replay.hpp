@@ -10,7 +10,7 @@
 namespace goshawk::recording {
 
 struct ReplayOptions {
-  std::string file;                    // stands in sentences
+  std::string file;                    // for sentences
   std::vector<std::string> topics;     // names, or beginnings like /uav1/*; none: all
   double rate = 1.0;                   // times as fast as it was
   double start_offset_s = 0.0;         // from the first message of the recording
