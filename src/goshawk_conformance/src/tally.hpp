@@ -1,5 +1,7 @@
 #pragma once
 
+#include <fmt/format.h>
+
 #include <set>
 #include <string>
 #include <vector>
@@ -11,7 +13,7 @@
 
 namespace goshawk::conformance {
 
-/// Collects what went wrong under a name; the item has passed where nothing did.
+/// Collects faults under a name; the item has passed if there are none.
 class Tally {
  public:
   explicit Tally(std::string name) : name_(std::move(name)) {}
@@ -22,9 +24,8 @@ class Tally {
   int checked() const { return checked_; }
   Item item() const {
     if (checked_ == 0) return {name_, false, "there was nothing to examine"};
-    if (faults_ == 0) return {name_, true, std::to_string(checked_) + " of them"};
-    return {name_, false,
-            std::to_string(faults_) + " of " + std::to_string(checked_) + ": " + first_};
+    if (faults_ == 0) return {name_, true, fmt::format("{} of them", checked_)};
+    return {name_, false, fmt::format("{} of {}: {}", faults_, checked_, first_)};
   }
 
  private:

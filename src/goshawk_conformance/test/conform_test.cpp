@@ -142,7 +142,7 @@ TEST(Conform, ResultsWithoutReportsAreNamed) {
 }
 
 TEST(Conform, StageThatAnswersOtherwiseTheSecondTimeIsNamed) {
-  EXPECT_THAT(failed(examine(Fault::moody)), ElementsAre("answers the same twice"));
+  EXPECT_THAT(failed(examine(Fault::moody)), ElementsAre("gives the same answer twice"));
 }
 
 TEST(Conform, NobodyThereIsAnError) {

@@ -132,15 +132,15 @@ TEST(ConformMapServer, ForeignOnesPassOrFailAtTheRightItems) {
       EXPECT_FALSE(item.passed) << item.name;
     }
   }
-  EXPECT_THAT(failed(reports[1]), Contains("keeps its map meanwhile"));
-  EXPECT_THAT(failed(reports[2]), Contains("obstacles are grown by what the map says"));
-  EXPECT_THAT(failed(reports[2]), testing::Not(Contains("what is seen is an obstacle")));
+  EXPECT_THAT(failed(reports[1]), Contains("keeps its map after bad clouds"));
+  EXPECT_THAT(failed(reports[2]), Contains("obstacles are grown by the map's inflation"));
+  EXPECT_THAT(failed(reports[2]), testing::Not(Contains("measured points become obstacles")));
   EXPECT_THAT(failed(reports[3]),
-              ElementsAre("updates follow on one another, and lead to the next whole map"));
+              ElementsAre("updates are consecutive and lead to the next whole map"));
   // Nothing comes however long it is waited for.
   const auto report =
       examine<ForeignMap>({.stage = "map_server", .timeout_s = 0.05}, MapFault::only_once);
-  EXPECT_THAT(failed(report), Contains("has a map for who comes"));
+  EXPECT_THAT(failed(report), Contains("publishes a map"));
 }
 
 PointCloud2 cloud(const Vec3& at, const std::string& first_field) {

@@ -117,7 +117,7 @@ TEST(ConformTracker, ForeignOnesPassOrFailAtTheRightItems) {
   EXPECT_THAT(failed(reports[2]), Contains("flies a trajectory: arrives and holds"));
   EXPECT_THAT(failed(reports[2]), testing::Not(Contains(StartsWith("commands"))));
   EXPECT_THAT(failed(reports[3]), Contains(StartsWith("commands are finite")));
-  EXPECT_THAT(failed(reports[4]), Contains("commands nothing without odometry"));
+  EXPECT_THAT(failed(reports[4]), Contains("stops commanding without odometry"));
 }
 
 }  // namespace
