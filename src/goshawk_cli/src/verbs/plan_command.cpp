@@ -48,8 +48,7 @@ void print(const Plan& plan) {
   }
 }
 
-Status save(const Plan& plan, const LoadedMap& map, const Limits& limits,
-            const std::string& folder) {
+Status save(const Plan& plan, const LoadedMap& map, const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   flight_report::Flight flight;
@@ -57,7 +56,7 @@ Status save(const Plan& plan, const LoadedMap& map, const Limits& limits,
   flight.title = "Goshawk plan";
   flight.obstacles = &raw;
   flight.grown = map.grown.get();
-  flight.limits = limits;
+  flight.limits = plan.request.limits;
   flight_report::Leg leg;
   leg.raw_path_map = plan.path->raw_map;
   leg.waypoints_map = plan.path->waypoints_map;
@@ -74,14 +73,17 @@ int run(const PlanOptions& options, const std::string& map_file) {
   if (!start) return report_failure(start.error(), json, kWrongCall);
   const auto goal = parse_point(options.goal);
   if (!goal) return report_failure(goal.error(), json, kWrongCall);
-  std::vector<Vec3> others;
+  PlanRequest request;
+  request.start.position = *start;
+  request.goal.position = *goal;
   for (const std::string& text : options.other_goals) {
     const auto other = parse_point(text);
     if (!other) return report_failure(other.error(), json, kWrongCall);
-    others.push_back(*other);
+    request.other_goals_map.push_back(*other);
   }
   const auto limits = options.map.limits({});
   if (!limits) return report_failure(limits.error(), json, kWrongCall);
+  request.limits = *limits;
   const auto config = PlanningConfig::read(options.map.ros_args(map_file));
   if (!config) return report_failure(config.error(), json, kWrongCall);
   auto planner = Planner::create(*config);
@@ -90,14 +92,10 @@ int run(const PlanOptions& options, const std::string& map_file) {
   if (!map) return report_failure(map.error(), json, kNotDone);
 
   planner->set_map(*map);
-  FlatState from;
-  FlatState to;
-  from.position = *start;
-  to.position = *goal;
-  const Plan plan = planner->plan(from, to, *limits, others);
-  // What cannot be saved is no success: said before, and instead of, the result.
+  const Plan plan = planner->plan(request);
+  // A plan that cannot be saved is a failure, and the failure is the only answer.
   if (plan.outcome && !options.save.empty()) {
-    if (const auto saved = save(plan, *map, *limits, options.save); !saved) {
+    if (const auto saved = save(plan, *map, options.save); !saved) {
       return report_failure(saved.error(), json, kNotDone);
     }
   }
