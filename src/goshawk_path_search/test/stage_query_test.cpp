@@ -232,11 +232,13 @@ TEST(UnknownSpace, OfARequestFollowsTheMap) {
 }
 
 TEST(Request, IsSearchedToWhicheverGoalIsNearest) {
-  auto search = stage({}, half_known_corridor());
+  const auto grid = half_known_corridor();
+  auto search = stage({}, grid);
+  const auto at = [&](int x) { return grid->geometry.center({x, 1, 0}); };
   PlanRequest request;
-  request.start.position = Vec3(0.1, 0.3, 0.1);
-  request.goal.position = Vec3(2.3, 0.3, 0.1);
-  request.other_goals_map = {Vec3(1.3, 0.3, 0.1), Vec3(0.7, 0.3, 0.1)};
+  request.start.position = at(0);
+  request.goal.position = at(11);
+  request.other_goals_map = {at(6), at(3)};
   const auto path = search.plan(request);
   ASSERT_TRUE(path.ok()) << path.error().message;
   EXPECT_EQ(path->goal, 2u);
