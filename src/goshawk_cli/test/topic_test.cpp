@@ -277,7 +277,7 @@ TEST(VerbsAlone, NameWhatIsWrongInACall) {
   expect({"topic", "ecko", "/a"}, "did you mean echo?");
   expect({"topic"}, "a verb is missing: goshawk topic list | info | echo");
   expect({"topic", "echo"}, "topic is required");
-  expect({"topic", "echo", "/a b"}, "is not a name");
+  expect({"topic", "echo", "/a b"}, "is not a valid name");
   expect({"topic", "echo", "/a", "-n", "0"}, "-n");
   expect({"topic", "list", "--timeout", "-1"}, "--timeout");
   expect({"topic", "pub", "/a", "std_msgs/msg/Strin", "{}"}, "did you mean std_msgs/msg/String?");
