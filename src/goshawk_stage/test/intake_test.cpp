@@ -44,10 +44,12 @@ class Requests : public testing::Test {
   }
 
   msg::PlanRequest request(std::uint64_t id, double deadline_s = 0.0) const {
-    return conversions::to_msg(PlanRequest{.id = id,
-                                           .stamp_ns = nodes_.clock->now_ns(),
-                                           .limits = {1.0, 1.0},
-                                           .deadline_s = deadline_s});
+    PlanRequest r;
+    r.id = id;
+    r.stamp_ns = nodes_.clock->now_ns();
+    r.limits = {1.0, 1.0};
+    r.deadline_s = deadline_s;
+    return conversions::to_msg(r);
   }
 
   stage_test::TwoNodes nodes_;
