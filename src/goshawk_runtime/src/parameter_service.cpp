@@ -130,7 +130,7 @@ Result<ParameterService::Listed> ParameterService::set(const Request& request) {
   ParameterSource wanted;
   for (const Parameter& p : request.parameters()) {
     auto entry = ParameterSource::written(p.value(), "asked by " + request.client());
-    if (wanted.entries().contains(p.name())) entry.fault = "stands there twice: remove one of them";
+    if (wanted.entries().contains(p.name())) entry.fault = "is specified twice: remove one of them";
     wanted.set(p.name(), std::move(entry));
   }
   const auto changes = parameters_->set(wanted);

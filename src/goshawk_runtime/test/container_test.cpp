@@ -100,7 +100,7 @@ TEST(ContainerCall, NamesWhatIsWrong) {
   expect_fault({"probe", "--ros-args", "-x", "1"}, HasSubstr("has no option '-x'"));
   expect_fault({"probe", "probe:b", "--ros-args", "-r", "__node:=c"},
                HasSubstr("several components"));
-  expect_fault({"probe", "probe"}, HasSubstr("two nodes named probe"));
+  expect_fault({"probe", "probe"}, HasSubstr("two nodes would be named probe"));
   expect_fault({"probe:a b"}, HasSubstr("'a b' is not a valid name"));
 }
 
