@@ -31,18 +31,18 @@ void append(std::string& layout, const std::string& part) {
 
 // ---- from .msg text
 
-struct Field {
+struct MsgField {
   std::string type;   // "float64", "std_msgs/Header"
   std::string count;  // of an array; "*": a sequence; empty: single
 };
-using Definitions = std::map<std::string, std::vector<Field>>;  // the root has the empty name
+using Definitions = std::map<std::string, std::vector<MsgField>>;  // the root has the empty name
 
 // "geometry_msgs/Point[6] control_points" @return nothing for a constant or an empty line
-std::optional<Field> field_in(std::string line) {
+std::optional<MsgField> field_in(std::string line) {
   line = line.substr(0, line.find('#'));
   if (line.find('=') != std::string::npos) return {};
   std::istringstream words(line);
-  Field field;
+  MsgField field;
   std::string name;
   if (!(words >> field.type >> name)) return {};
   const auto bracket = field.type.find('[');
@@ -75,7 +75,7 @@ std::optional<std::string> layout_of(const Definitions& definitions, const std::
   const auto found = definitions.find(name);
   if (found == definitions.end() || depth > kDeepest) return {};
   std::string layout;
-  for (const Field& field : found->second) {
+  for (const MsgField& field : found->second) {
     std::optional<std::string> inner = field.type;
     if (std::ranges::find(kPrimitives, field.type) == std::end(kPrimitives)) {
       inner = layout_of(definitions, field.type, depth + 1);
