@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "file.hpp"
+#include "goshawk/visualization/speed_color.hpp"
 
 namespace goshawk::flight_report {
 
@@ -161,18 +162,9 @@ Status Canvas::save(const std::filesystem::path& png) const {
               "Cairo could not draw '" + png.string() + "': " + cairo_status_to_string(status));
 }
 
-Color speed_color(double s) {
-  constexpr std::array<Color, 5> kStops{{{0.13, 0.36, 0.92},
-                                         {0.45, 0.28, 0.88},
-                                         {0.76, 0.20, 0.62},
-                                         {0.90, 0.25, 0.28},
-                                         {0.98, 0.54, 0.10}}};
-  const double x = std::clamp(s, 0.0, 1.0) * (kStops.size() - 1);
-  const auto i = std::min(std::size_t(x), kStops.size() - 2);
-  const double f = x - double(i);
-  const Color& a = kStops[i];
-  const Color& b = kStops[i + 1];
-  return {a.r + f * (b.r - a.r), a.g + f * (b.g - a.g), a.b + f * (b.b - a.b)};
+Color speed_color(double ratio) {
+  const Vec3 c = visualization::speed_color(ratio);
+  return {c.x(), c.y(), c.z()};
 }
 
 }  // namespace goshawk::flight_report

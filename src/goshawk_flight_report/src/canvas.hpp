@@ -80,8 +80,6 @@ class Canvas {
   std::unique_ptr<cairo_t, Destroy> context_;
 };
 
-/// @param s in [0, 1], slow to fast @return blue over purple to orange: bluer to yellower all
-/// the way, which every kind of colour vision tells apart; the flight's page has the same
-Color speed_color(double s);
+Color speed_color(double ratio);  // visualization::speed_color()
 
 }  // namespace goshawk::flight_report

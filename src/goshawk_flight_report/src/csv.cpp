@@ -3,7 +3,7 @@
 
 #include "file.hpp"
 #include "goshawk/flight_report/files.hpp"
-#include "goshawk/flight_report/polytope_mesh.hpp"
+#include "goshawk/visualization/polytope_mesh.hpp"
 
 namespace goshawk::flight_report {
 

@@ -7,7 +7,7 @@
 
 #include "canvas.hpp"
 #include "goshawk/flight_report/draw.hpp"
-#include "goshawk/flight_report/polytope_mesh.hpp"
+#include "goshawk/visualization/polytope_mesh.hpp"
 #include "obstacle_image.hpp"
 #include "plot_area.hpp"
 

@@ -2,7 +2,6 @@
 #include "goshawk/navigator/navigator.hpp"
 #include "goshawk/runtime/component.hpp"
 #include "goshawk/runtime/stage.hpp"
-#include "pictures.hpp"
 
 namespace goshawk::navigator {
 namespace {
@@ -30,10 +29,7 @@ class NavigatorComponent : public Component {
         requests_(node.advertise<msg::PlanRequest>("plan_request", Qos::reliable_last())),
         commits_(node.advertise<msg::CommittedTrajectory>("committed_trajectory", Qos::latched())),
         states_(node.advertise<msg::NavigatorState>("navigator_state", Qos::latched(20))),
-        alive_(node.advertise<msg::NavigatorState>("navigator_alive", Qos::best_effort())),
-        path_lines_(node.advertise<nav_msgs::msg::Path>("path_line", Qos::best_effort())),
-        markers_(
-            node.advertise<visualization_msgs::msg::MarkerArray>("markers", Qos::best_effort())) {
+        alive_(node.advertise<msg::NavigatorState>("navigator_alive", Qos::best_effort())) {
     subscribe();
     node.every(0.02, [this] {
       navigator_.tick(node_.now_ns());
@@ -99,7 +95,6 @@ class NavigatorComponent : public Component {
     } else {
       wire_ns_ = wire_time_ns(m.header(), info);
       candidate_ = m;
-      candidate_received_ = *received;
       navigator_.on_trajectory(m.request().id(), std::move(received->trajectory), info.received_ns);
     }
     carry_out();
@@ -141,8 +136,6 @@ class NavigatorComponent : public Component {
     m.trajectory(candidate_);
     send(commits_, m);
     reporter_.answered(order.id, {.wire_ns = wire_ns_, .compute_ns = 0});
-    send(path_lines_, path_line(candidate_received_.trajectory, order.start_time_ns, 0.05));
-    send(markers_, corridor_markers(candidate_received_, order.start_time_ns));
   }
 
   void publish(const StateOrder& order) {
@@ -169,10 +162,7 @@ class NavigatorComponent : public Component {
   Publisher<msg::CommittedTrajectory> commits_;
   Publisher<msg::NavigatorState> states_;
   Publisher<msg::NavigatorState> alive_;
-  Publisher<nav_msgs::msg::Path> path_lines_;
-  Publisher<visualization_msgs::msg::MarkerArray> markers_;
   msg::BezierTrajectory candidate_;  // the newest certified one, to commit
-  conversions::ReceivedTrajectory candidate_received_;
   msg::NavigatorState state_message_;
   std::int64_t wire_ns_ = 0;
 };

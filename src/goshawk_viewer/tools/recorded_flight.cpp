@@ -5,8 +5,8 @@
 #include "goshawk/conversions/plan.hpp"
 #include "goshawk/conversions/vehicle.hpp"
 #include "goshawk/core/grid_update.hpp"
+#include "goshawk/map_server/voxel_map.hpp"
 #include "goshawk/runtime/message_type.hpp"
-#include "goshawk/viewer_bridge/octomap_voxels.hpp"
 #include "octomap_msgs.h"
 
 namespace goshawk::viewer {
@@ -15,6 +15,7 @@ namespace {
 namespace msg = goshawk_msgs::msg;
 
 constexpr std::size_t kMostComplaints = 20;
+constexpr std::int64_t kMostVoxels = 300'000'000;  // that a page can draw
 
 /// @return invalid_input where the bytes are no such message
 template <typename Message>
@@ -132,10 +133,15 @@ Status RecordedFlight::take_path(const Bytes& bytes) {
 Status RecordedFlight::take_octomap(const Bytes& bytes) {
   const auto m = decoded<octomap_msgs::msg::Octomap>(bytes);
   if (!m) return m.error();
-  auto grid = viewer_bridge::octomap_voxels(
-      {reinterpret_cast<const std::uint8_t*>(m->data().data()), m->data().size()}, m->resolution());
-  if (!grid) return grid.error();
-  obstacles_ = *std::move(grid);
+  const std::string_view payload(reinterpret_cast<const char*>(m->data().data()),
+                                 m->data().size());
+  const auto tree = map_server::read_binary_payload(payload, m->resolution());
+  if (!tree) return tree.error();
+  auto voxels = map_server::voxelize(**tree, {.box = {}, .max_voxels = kMostVoxels});
+  if (!voxels) return voxels.error();
+  obstacles_.emplace();
+  obstacles_->geometry = voxels->geometry;
+  obstacles_->occupied = std::move(voxels->occupied);
   return success();
 }
 

@@ -1,23 +1,24 @@
+#include <optional>
+
 #include "goshawk/conversions/vehicle.hpp"
 #include "goshawk/runtime/component.hpp"
 #include "goshawk/runtime/stage_reporter.hpp"
-#include "goshawk/viewer_bridge/octomap_voxels.hpp"
 #include "markers.hpp"
 #include "octomap_msgs.h"
 
-namespace goshawk::viewer_bridge {
+namespace goshawk::visualization {
 
-struct VisualizerConfig {
+struct Config {
   int most_cubes = 200000;
   double track_step_m = 0.02;
 };
 
 template <typename Self, typename Visitor>
-requires std::same_as<std::remove_const_t<Self>, VisualizerConfig>
+requires std::same_as<std::remove_const_t<Self>, Config>
 void describe(Self& c, Visitor&& visit) {
-  visit("most_cubes", c.most_cubes, "", "voxels drawn at most; of more, every n-th is left",
+  visit("most_cubes", c.most_cubes, "", "largest number of voxels to draw; of more, every n-th",
         AtRunTime{Range{1, 10000000}});
-  visit("track_step_m", c.track_step_m, "m", "between points of the flown track",
+  visit("track_step_m", c.track_step_m, "m", "distance between points of the flown track",
         AtRunTime{Range{0.001, 10.0}});
 }
 
@@ -25,36 +26,45 @@ namespace {
 
 using namespace goshawk::runtime;
 namespace msg = goshawk_msgs::msg;
+using octomap_msgs::msg::Octomap;
 using visualization_msgs::msg::MarkerArray;
 
-constexpr std::size_t kMostTrack = 20000;  // points; the oldest half goes beyond
+constexpr double kPeriod_s = 0.2;
+constexpr std::size_t kMostTrack = 20000;  // points; then the older half is dropped
+constexpr std::int64_t kMostVoxels = 300'000'000;
 
-/// What stages say, as pictures that any ROS 2 viewer draws: view/obstacles, view/plan, view/flown.
+/// octomap_binary, path, committed_trajectory, odom -> view/obstacles, view/plan, view/flown,
+/// path_line, markers: pictures for any ROS 2 viewer. Maps and tracks are drawn only while
+/// somebody reads them.
 class VisualizerComponent : public Component {
  public:
   explicit VisualizerComponent(Node& node)
       : node_(node),
-        config_(node.parameters<VisualizerConfig>([this](const VisualizerConfig& c) {
-          config_ = c;  // of the pictures to come
+        config_(node.parameters<Config>([this](const Config& c) {
+          config_ = c;
           return success();
         })),
         reporter_(node, "markers"),
         obstacles_(node.advertise<MarkerArray>("view/obstacles", Qos::latched())),
         plan_(node.advertise<MarkerArray>("view/plan", Qos::latched())),
-        flown_(node.advertise<MarkerArray>("view/flown", Qos::latched())) {
-    node.subscribe<octomap_msgs::msg::Octomap>(
-        "octomap_binary", Qos::latched(),
-        [this](const octomap_msgs::msg::Octomap& m, const MessageInfo&) { on_map(m); });
+        flown_(node.advertise<MarkerArray>("view/flown", Qos::latched())),
+        path_line_(node.advertise<nav_msgs::msg::Path>("path_line", Qos::latched())),
+        corridor_(node.advertise<MarkerArray>("markers", Qos::latched())) {
+    node.subscribe<Octomap>("octomap_binary", Qos::latched(),
+                            [this](const Octomap& m, const MessageInfo&) { new_map_ = m; });
     node.subscribe<msg::Path>("path", Qos::reliable_last(),
                               [this](const msg::Path& m, const MessageInfo&) { path_ = m; });
     node.subscribe<msg::CommittedTrajectory>(
         "committed_trajectory", Qos::latched(),
-        [this](const msg::CommittedTrajectory& m, const MessageInfo&) { on_trajectory(m); });
+        [this](const msg::CommittedTrajectory& m, const MessageInfo&) { draw_plan(m); });
     node.subscribe<nav_msgs::msg::Odometry>(
         "odom", Qos::best_effort(),
         [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) { on_odometry(m); });
-    node.every(0.2, [this] { publish_track(); });
-    reporter_.ready("draws on view/obstacles, view/plan and view/flown");
+    node.every(kPeriod_s, [this] {
+      draw_map();
+      draw_track();
+    });
+    reporter_.ready("draws on view/obstacles, view/plan, view/flown, path_line and markers");
   }
 
  private:
@@ -63,38 +73,50 @@ class VisualizerComponent : public Component {
     if (auto status = publisher.publish(message); !status) reporter_.fault(status.error());
   }
 
-  void on_map(const octomap_msgs::msg::Octomap& m) {
-    const auto& data = m.data();
-    const auto grid = octomap_voxels(
-        {reinterpret_cast<const std::uint8_t*>(data.data()), data.size()}, m.resolution());
-    if (!grid) return reporter_.fault(grid.error());
+  template <typename... Markers>
+  void send_markers(const Publisher<MarkerArray>& publisher, Markers&&... markers) {
     MarkerArray array;
-    array.markers().push_back(voxel_marker(*grid, config_.most_cubes, node_.now_ns()));
-    send(obstacles_, array);
+    (array.markers().push_back(std::forward<Markers>(markers)), ...);
+    send(publisher, array);
   }
 
-  void on_trajectory(const msg::CommittedTrajectory& m) {
+  void draw_map() {
+    if (!new_map_ || obstacles_.matched() == 0) return;
+    const auto map = std::exchange(new_map_, {});
+    const std::string_view payload(reinterpret_cast<const char*>(map->data().data()),
+                                   map->data().size());
+    const auto tree = map_server::read_binary_payload(payload, map->resolution());
+    if (!tree) return reporter_.fault(tree.error());
+    const auto voxels = map_server::voxelize(**tree, {.box = {}, .max_voxels = kMostVoxels});
+    if (!voxels) return reporter_.fault(voxels.error());
+    send_markers(obstacles_, voxel_marker(*voxels, config_.most_cubes, node_.now_ns()));
+  }
+
+  void draw_plan(const msg::CommittedTrajectory& m) {
     const auto received = conversions::from_msg(m.trajectory());
     if (!received) return reporter_.fault(received.error());
+    const auto& [request, trajectory, polytopes, certificate] = *received;
+    const std::int64_t start_ns = conversions::to_ns(m.start_time());
+    send(path_line_, path_line(trajectory, 0.05, start_ns));
+    send_markers(corridor_, edge_marker("corridor", polytopes, 0.02, start_ns));
+
     const std::int64_t now_ns = node_.now_ns();
     MarkerArray array;
-    if (path_.request().id() == received->request.id) {
+    if (path_.request().id() == request.id) {
       array.markers().push_back(line_marker("path as searched", conversions::from_msg(path_.raw()),
                                             0.02, {0.79, 0.64, 1.0}, now_ns));
       array.markers().push_back(line_marker("pruned path", conversions::from_msg(path_.waypoints()),
                                             0.025, {0.95, 0.89, 0.30}, now_ns));
     }
-    for (auto& marker : corridor_markers(received->polytopes, now_ns)) {
-      array.markers().push_back(std::move(marker));
-    }
-    array.markers().push_back(
-        trajectory_marker(received->trajectory, received->request.limits.v_max_m_s, now_ns));
+    array.markers().push_back(face_marker(polytopes, now_ns));
+    array.markers().push_back(edge_marker("corridor edges", polytopes, 0.015, now_ns));
+    array.markers().push_back(trajectory_marker(trajectory, request.limits.v_max_m_s, now_ns));
     send(plan_, array);
   }
 
   void on_odometry(const nav_msgs::msg::Odometry& m) {
     const auto state = conversions::from_msg(m);
-    if (!state) return;  // the tracker says what is wrong with it
+    if (!state) return;  // the tracker reports bad odometry
     if (!track_.empty() && (track_.back() - state->position_map).norm() < config_.track_step_m) {
       return;
     }
@@ -103,28 +125,29 @@ class VisualizerComponent : public Component {
     track_is_new_ = true;
   }
 
-  void publish_track() {
-    if (!track_is_new_ || track_.size() < 2) return;
+  void draw_track() {
+    if (!track_is_new_ || track_.size() < 2 || flown_.matched() == 0) return;
     track_is_new_ = false;
-    MarkerArray array;
-    array.markers().push_back(
-        line_marker("flown track", track_, 0.025, {1.0, 1.0, 1.0}, node_.now_ns()));
-    send(flown_, array);
+    send_markers(flown_,
+                 line_marker("flown track", track_, 0.025, {1.0, 1.0, 1.0}, node_.now_ns()));
   }
 
   Node& node_;
-  VisualizerConfig config_;
+  Config config_;
   StageReporter reporter_;
   Publisher<MarkerArray> obstacles_;
   Publisher<MarkerArray> plan_;
   Publisher<MarkerArray> flown_;
+  Publisher<nav_msgs::msg::Path> path_line_;
+  Publisher<MarkerArray> corridor_;
+  std::optional<Octomap> new_map_;  // not drawn yet
   msg::Path path_;
   std::vector<Vec3> track_;
   bool track_is_new_ = false;
 };
 
 }  // namespace
-}  // namespace goshawk::viewer_bridge
+}  // namespace goshawk::visualization
 
-GOSHAWK_REGISTER_COMPONENT(goshawk::viewer_bridge::VisualizerComponent,
-                           goshawk::viewer_bridge::VisualizerConfig)
+GOSHAWK_REGISTER_COMPONENT(goshawk::visualization::VisualizerComponent,
+                           goshawk::visualization::Config)

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "goshawk/core/grid_geometry.hpp"
 #include "goshawk/core/result.hpp"
@@ -47,5 +48,9 @@ Status save_voxels(const GridGeometry& geometry, const BitGrid& occupied, const 
 
 /// @return the tree's occupancy without a header, as octomap_msgs/Octomap carries it (binary)
 std::string binary_payload(const octomap::OcTree& tree);
+
+/// The tree of such a payload. @param resolution_m [m] from 1e-6 to 1e3
+/// @return map_malformed if it is not one whole tree, map_empty if it holds no node
+Result<OcTreePtr> read_binary_payload(std::string_view payload, double resolution_m);
 
 }  // namespace goshawk::map_server
