@@ -18,7 +18,7 @@ namespace goshawk::viewer_bridge {
 struct Config {
   std::string address = "127.0.0.1";
   int port = 8765;
-  std::string origins;
+  std::string origins = kDefaultOrigins;
   std::string publish_topics = "goal_pose";
   int queue_mb = 32;
   int clients = 16;
@@ -31,7 +31,7 @@ void describe(Self& c, Visitor&& visit) {
         Anything{});
   visit("port", c.port, "", "TCP port to listen on; 0: any that is free", Range{0, 65535});
   visit("origins", c.origins, "",
-        "web pages that may connect beside local ones and Foxglove's, with commas, or any",
+        "web pages that may connect, as http://host:port with commas between them; any: all",
         Anything{});
   visit("publish_topics", c.publish_topics, "",
         "topics that clients may publish on, with commas, or any", Anything{});

@@ -1,5 +1,5 @@
-"""Serves a few files of this machine to its browsers, with parts of them (RFC 9110, ranges):
-viewers of recordings ask for the end of a file first, then for what they show."""
+"""Serves a few files to browsers on this machine, in parts where they ask for parts (RFC 9110,
+ranges): a viewer of recordings asks for the end of a file first, then for what it shows."""
 
 import http.server
 import mimetypes
@@ -11,11 +11,21 @@ import threading
 TYPES = {".js": "text/javascript; charset=utf-8", ".html": "text/html; charset=utf-8",
          ".wasm": "application/wasm", ".json": "application/json", ".mcap": "application/octet-stream"}
 CHUNK = 1 << 18
+# The names by which a browser reaches a server that listens on loopback. A page from elsewhere whose
+# name was made to lead here (DNS rebinding) sends its own name.
+OWN_NAMES = {"127.0.0.1", "localhost", "[::1]"}
+
+
+def is_own_host(hosts):
+    """@param hosts the values of all Host headers @return whether the client asked for this machine
+    by one of its own names; the port may be another one, as behind an ssh tunnel"""
+    match = re.fullmatch(r"(\[[^\]]*\]|[^:\[]*)(?::[0-9]{0,5})?", hosts[0]) if len(hosts) == 1 else None
+    return match is not None and match[1].lower() in OWN_NAMES
 
 
 def byte_range(header, size):
-    """@return the first and the last byte that a Range header asks for of `size`; None where it is
-    to be ignored (none, several, or no range of bytes); raises ValueError where nothing is there."""
+    """@return the first and the last byte that a Range header asks for of `size`; None if it is to be
+    ignored (none, several, or no range of bytes); raises ValueError if nothing is there."""
     match = re.fullmatch(r"bytes=(\d*)-(\d*)", (header or "").replace(" ", ""))
     if not match or match[1] == match[2] == "":
         return None
@@ -73,16 +83,21 @@ def handler_of(site):
             name = self.path.split("?")[0]
             content = site.find("/" if name == "/index.html" else name)
             try:
-                if content is None:
-                    self.head(404, "text/plain", 25)
-                    if with_body:
-                        self.wfile.write(b"there is one page here: /")
+                if not is_own_host(self.headers.get_all("Host") or []):
+                    self.refuse(421, b"open this page as http://127.0.0.1 or http://localhost\n", with_body)
+                elif content is None:
+                    self.refuse(404, b"not found; the page is /\n", with_body)
                 elif isinstance(content, bytes):
                     self.give_bytes(content, name, with_body)
                 else:
                     self.give_file(pathlib.Path(content), name, with_body)
             except (BrokenPipeError, ConnectionResetError, TimeoutError):
                 self.close_connection = True
+
+        def refuse(self, status, sentence, with_body):
+            self.head(status, "text/plain", len(sentence))
+            if with_body:
+                self.wfile.write(sentence)
 
         def give_bytes(self, content, name, with_body):
             kind = TYPES.get(pathlib.PurePath(name).suffix, TYPES[".html"])

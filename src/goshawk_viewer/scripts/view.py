@@ -11,6 +11,7 @@ Serves it on this machine until Ctrl-C.
 """
 
 import argparse
+import http.client
 import json
 import os
 import pathlib
@@ -160,14 +161,37 @@ def listens(place):
         return False
 
 
-def start_bridge(prefix, place):
-    """Where nobody listens on this machine, a bridge of our own. @return the process, or None"""
-    host, port = place
-    if listens(place) or host not in ("127.0.0.1", "localhost"):
+def refusal(place, origin):
+    """@return why the bridge would refuse a page of this origin, or None; None if none answers"""
+    link = http.client.HTTPConnection(*place, timeout=3)
+    try:
+        link.request("GET", "/", headers={
+            "Connection": "Upgrade", "Upgrade": "websocket", "Origin": origin,
+            "Sec-WebSocket-Version": "13", "Sec-WebSocket-Key": "Z29zaGF3ayB2aWV3IGxpdg==",
+            "Sec-WebSocket-Protocol": "foxglove.websocket.v1"})
+        answer = link.getresponse()
+        return None if answer.status == 101 else answer.read(500).decode(errors="replace").strip()
+    except (OSError, http.client.HTTPException):
         return None
-    process = subprocess.Popen([f"{prefix}/bin/goshawk_container", "viewer_bridge", "--ros-args",
-                                "-p", f"port:={port}"], stdin=subprocess.DEVNULL,
-                               stdout=sys.stderr)
+    finally:
+        link.close()
+
+
+def bridge_for(options, place, page_port):
+    """Makes sure that the page finds a bridge: one that listens must let the page in; on this
+    machine, one is started if none listens. @return the process that was started, or None"""
+    host, port = place
+    if listens(place):
+        why = refusal(place, f"http://127.0.0.1:{page_port}")
+        if why:
+            raise Fault("invalid_parameter", f"the bridge at {options.bridge} refuses this page: {why}")
+        return None
+    if host not in ("127.0.0.1", "localhost"):
+        return None
+    origins = f"http://127.0.0.1:{page_port},http://localhost:{page_port}"
+    process = subprocess.Popen([f"{options.prefix}/bin/goshawk_container", "viewer_bridge",
+                                "--ros-args", "-p", f"port:={port}", "-p", f"origins:={origins}"],
+                               stdin=subprocess.DEVNULL, stdout=sys.stderr)
     for _ in range(100):
         if process.poll() is not None:
             raise Fault("io_failed", "the bridge could not be started: see above")
@@ -184,12 +208,15 @@ def open_browser(url):
         subprocess.Popen([opener, url], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
 
-def serve(options, site, shown):
+def start_server(options, site):
     try:
-        server = page_server.start(site, options.port)
+        return page_server.start(site, options.port)
     except OSError as error:
-        raise Fault("io_failed", f"port {options.port} cannot be had ({error.strerror}): "
+        raise Fault("io_failed", f"port {options.port} cannot be used ({error.strerror}): "
                     "--port takes another, --port 0 any") from None
+
+
+def serve_until_told(options, server, shown):
     url = f"http://127.0.0.1:{server.server_port}/"
     tell(options, {"ok": True, "code": "ok", "message": "", "url": url, "shows": shown})
     if not options.no_open:
@@ -198,7 +225,6 @@ def serve(options, site, shown):
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: done.set())
     done.wait()
-    server.shutdown()
 
 
 def tell(options, result):
@@ -273,10 +299,13 @@ def run(options):
     if options.check:
         tell(options, {"ok": True, "code": "ok", "message": "", "url": None, "shows": shown})
         return
-    bridge = start_bridge(options.prefix, place) if options.live else None
+    server = start_server(options, site)
+    bridge = None
     try:
-        serve(options, site, shown)
+        bridge = bridge_for(options, place, server.server_port) if options.live else None
+        serve_until_told(options, server, shown)
     finally:
+        server.shutdown()
         if bridge:
             bridge.terminate()
             bridge.wait()

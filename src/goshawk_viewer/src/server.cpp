@@ -1,5 +1,7 @@
 #include "goshawk/viewer_bridge/server.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <map>
@@ -56,6 +58,7 @@ std::string message_frame(std::uint32_t subscription, std::int64_t stamp_ns,
 
 struct Server::Impl {
   ServerOptions options;
+  Origins origins;
 
   mutable std::mutex mutex;  // of everything below but the sockets
   std::map<std::uint64_t, Client> clients;
@@ -84,9 +87,9 @@ struct Server::Impl {
       return std::string("this server speaks ") + kProtocol +
              "; connect with Foxglove, Lichtblick or goshawk view";
     }
-    if (!origin_allowed(origin, options.origins)) {
-      return "pages from " + origin.substr(0, 80) +
-             " may not connect; the parameter origins can allow them";
+    if (!origins.allow(origin)) {
+      return fmt::format("pages from {0} may not connect; -p origins:={0} allows them",
+                         origin.substr(0, 80));
     }
     if (int(clients.size()) < options.clients) return {};
     return "there are " + std::to_string(options.clients) + " clients already";
@@ -180,9 +183,12 @@ Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options) {
   if (options.port < 0 || options.port > 65535) {
     return fail(ErrorCode::invalid_parameter, place + ": ports go from 0 to 65535");
   }
+  auto origins = Origins::parse(options.origins);
+  if (!origins) return origins.error();
   auto impl = std::make_unique<Impl>();
   Impl& s = *impl;
   s.options = options;
+  s.origins = *std::move(origins);
   SocketServer::Callbacks callbacks;
   callbacks.validate = [&s](const auto& p, const auto& o) { return s.on_validate(p, o); };
   callbacks.opened = [&s](std::uint64_t c) { s.on_opened(c); };

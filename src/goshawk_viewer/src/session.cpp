@@ -1,8 +1,6 @@
 #include "session.hpp"
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 namespace goshawk::viewer_bridge {
 namespace {
@@ -104,26 +102,6 @@ Session::Answer Session::on_binary(const std::string& bytes) {
   event.bytes.assign(bytes.begin() + 5, bytes.end());
   answer.events.push_back(std::move(event));
   return answer;
-}
-
-bool origin_allowed(const std::string& origin, const std::string& extra) {
-  if (origin.empty() || extra == "any") return true;
-  std::istringstream list(extra);
-  for (std::string one; std::getline(list, one, ',');) {
-    if (one == origin) return true;
-  }
-  const auto scheme = origin.find("://");
-  if (scheme == std::string::npos) return false;  // "null": a page that hides where it is from
-  const std::string kind = origin.substr(0, scheme);
-  if (kind != "http" && kind != "https") return true;
-  std::string host = origin.substr(scheme + 3);
-  const auto colon = host.rfind(':');
-  if (colon != std::string::npos && host.find(']', colon) == std::string::npos) {
-    host.resize(colon);
-  }
-  static constexpr const char* kHosts[] = {"localhost", "127.0.0.1", "[::1]"};
-  if (std::ranges::find(kHosts, host) != std::end(kHosts)) return true;
-  return kind == "https" && (host == "app.foxglove.dev" || host == "studio.foxglove.dev");
 }
 
 }  // namespace goshawk::viewer_bridge

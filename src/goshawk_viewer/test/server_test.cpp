@@ -154,7 +154,7 @@ TEST_F(BridgeServer, RefusesStrangersWithASentence) {
   EXPECT_THAT(other.shake_hands(""), HasSubstr("speaks foxglove.websocket.v1"));
   RawClient page(server_->port());
   EXPECT_THAT(page.shake_hands("foxglove.websocket.v1", "https://example.org"),
-              HasSubstr("https://example.org may not connect"));
+              HasSubstr("https://example.org may not connect; -p origins:=https://example.org"));
   RawClient first(server_->port());
   EXPECT_THAT(first.shake_hands(), StartsWith("HTTP/1.1 101"));
   ASSERT_TRUE(comes_true([&] { return server_->clients() == 1; }));
@@ -173,6 +173,9 @@ TEST_F(BridgeServer, SaysWhyItCannotListen) {
   options.port = 70000;
   EXPECT_EQ(Server::start(options).code(), ErrorCode::invalid_parameter);
   options.port = 0;
+  options.origins = "localhost";
+  EXPECT_EQ(Server::start(options).code(), ErrorCode::invalid_parameter);
+  options.origins = "";
   options.address = "not an address";
   EXPECT_EQ(Server::start(options).code(), ErrorCode::invalid_parameter);
   options.address = "203.0.113.1";  // of no interface here

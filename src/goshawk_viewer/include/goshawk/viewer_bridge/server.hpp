@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "goshawk/core/result.hpp"
+#include "goshawk/viewer_bridge/origins.hpp"
 
 namespace goshawk::viewer_bridge {
 
@@ -15,7 +16,7 @@ struct ServerOptions {
   std::string address = "127.0.0.1";  // IPv4 of this machine; who can reach it can send goals
   int port = 8765;                    // 0: any that is free
   std::string name = "goshawk";
-  std::string origins;                   // web pages beyond local ones, with commas, or "any"
+  std::string origins = kDefaultOrigins;  // as Origins::parse() reads them
   int clients = 16;                      // at once
   std::size_t queue_bytes = 32U << 20U;  // unsent to one client; what is beyond is dropped
   double full_queue_s = 10.0;            // a client that never reads is closed after that
@@ -52,7 +53,7 @@ enum class StatusLevel { info = 0, warning = 1, error = 2 };
 /// be called from any thread; one thread of its own serves the sockets.
 class Server {
  public:
-  /// @return invalid_parameter for an address that is none, io_failed where the port is in use
+  /// @return invalid_parameter for a bad address, port or list of origins; io_failed if the port is in use
   static Result<std::unique_ptr<Server>> start(const ServerOptions& options);
   ~Server();
 
