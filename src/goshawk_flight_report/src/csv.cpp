@@ -84,7 +84,7 @@ Status write_corridor_ply(const Flight& flight, const std::filesystem::path& fil
   std::size_t face_count = 0;
   for (std::size_t leg = 0; leg < flight.legs.size(); ++leg) {
     for (std::size_t k = 0; k < flight.legs[leg].corridor.size(); ++k) {
-      const Mesh mesh = closed_mesh(flight.legs[leg].corridor[k]);
+      const visualization::Mesh mesh = visualization::closed_mesh(flight.legs[leg].corridor[k]);
       for (const Vec3& p : mesh.corners) {
         append(vertices, p.x());
         for (int axis = 1; axis < 3; ++axis) append(vertices += ' ', p[axis]);

@@ -206,10 +206,10 @@ class MapPicture {
   void corridor(const Leg& leg) {
     for (const Polytope& polytope : leg.corridor) {
       std::vector<Vec2> corners;
-      for (const Polygon& face : face_polygons(polytope)) {
+      for (const auto& face : visualization::face_polygons(polytope)) {
         for (const Vec3& p : face) corners.push_back(pixel(p));
       }
-      canvas_.polygon(convex_hull(std::move(corners)), kCorridor, {kCorridorEdge, 1.1});
+      canvas_.polygon(visualization::convex_hull(std::move(corners)), kCorridor, {kCorridorEdge, 1.1});
     }
   }
 
