@@ -1,5 +1,7 @@
 #include "goshawk/flight_check/planned_track.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -37,16 +39,28 @@ std::string piece_fault(const PlannedPiece& piece) {
   return {};
 }
 
-Status check(std::span<const PlannedPiece> pieces, double step_s, double yaw_rad) {
+std::string yaw_fault(const PlannedYaw& yaw) {
+  const auto finite = [](double x) { return std::isfinite(x); };
+  if (yaw.points_rad.empty()) return finite(yaw.yaw_rad) ? "" : "its yaw is not finite";
+  if (yaw.points_rad.size() < 3) return "its yaw curve has fewer than three points";
+  if (!(yaw.step_s > 0.0) || !finite(yaw.step_s)) return "its yaw curve's step is not above zero";
+  return std::ranges::all_of(yaw.points_rad, finite) ? "" : "its yaw curve is not finite";
+}
+
+Status check(std::span<const PlannedPiece> pieces, double step_s, const PlannedYaw& yaw,
+             double start_s) {
   const auto wrong = [](const std::string& what) { return fail(ErrorCode::invalid_input, what); };
   if (pieces.empty()) return wrong("the trajectory has no piece: plan again");
-  if (!(step_s > 0.0) || !std::isfinite(yaw_rad)) {
-    return wrong("a step above zero and a finite yaw are needed to sample a trajectory");
+  if (!(step_s > 0.0) || !std::isfinite(start_s)) {
+    return wrong("sampling a trajectory needs a step above zero and a finite start");
+  }
+  if (const auto fault = yaw_fault(yaw); !fault.empty()) {
+    return wrong("the trajectory cannot be judged: " + fault);
   }
   double samples = 0.0;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const std::string fault = piece_fault(pieces[i]);
-    if (!fault.empty()) return wrong("piece " + std::to_string(i) + " " + fault + ": plan again");
+    if (!fault.empty()) return wrong(fmt::format("piece {} {}: plan again", i, fault));
     samples += pieces[i].duration_s / step_s + 1.0;
   }
   if (samples < kMostSamples) return success();
@@ -54,6 +68,18 @@ Status check(std::span<const PlannedPiece> pieces, double step_s, double yaw_rad
 }
 
 }  // namespace
+
+/// De Boor's algorithm.
+double PlannedYaw::at(double t_s) const {
+  if (points_rad.empty()) return yaw_rad;
+  const double last = double(points_rad.size() - 2);
+  const double u = std::clamp(t_s / step_s, 0.0, last);
+  const auto k = std::min(std::size_t(u), points_rad.size() - 3);
+  const double part = u - double(k);
+  const double a = std::lerp(points_rad[k], points_rad[k + 1], (1.0 + part) / 2.0);
+  const double b = std::lerp(points_rad[k + 1], points_rad[k + 2], part / 2.0);
+  return std::lerp(a, b, part);
+}
 
 /// Free fall leaves the attitude open; then the vehicle is taken to be level.
 Eigen::Quaterniond flat_attitude(const Vec3& acceleration_map, double yaw_rad) {
@@ -70,17 +96,17 @@ Eigen::Quaterniond flat_attitude(const Vec3& acceleration_map, double yaw_rad) {
 }
 
 Result<std::vector<Sample>> planned_track(std::span<const PlannedPiece> pieces, double step_s,
-                                          double yaw_rad) {
-  if (auto status = check(pieces, step_s, yaw_rad); !status) return status.error();
+                                          const PlannedYaw& yaw, double start_s) {
+  if (auto status = check(pieces, step_s, yaw, start_s); !status) return status.error();
   std::vector<Sample> track;
-  double start_s = 0.0;
   for (const PlannedPiece& piece : pieces) {
     const int steps = std::max(1, int(std::ceil(piece.duration_s / step_s)));
     for (int k = track.empty() ? 0 : 1; k <= steps; ++k) {
       const double u = double(k) / steps;
       const Moved moved = evaluate(piece, u);
-      track.push_back({start_s + u * piece.duration_s, moved.position_map,
-                       flat_attitude(moved.acceleration_map, yaw_rad)});
+      const double t_s = start_s + u * piece.duration_s;
+      track.push_back(
+          {t_s, moved.position_map, flat_attitude(moved.acceleration_map, yaw.at(t_s))});
     }
     start_s += piece.duration_s;
   }
