@@ -10,13 +10,15 @@
 #include "goshawk/flight_check/planned_track.hpp"
 #include "goshawk/flight_check/watch.hpp"
 #include "goshawk/runtime/component.hpp"
-#include "goshawk/runtime/stage.hpp"
+#include "goshawk/stage/intake.hpp"
 #include "octomap_msgs.h"
 
 namespace goshawk::flight_check {
 namespace {
 
 using namespace goshawk::runtime;
+using namespace goshawk::stage;
+using namespace goshawk::stage;
 namespace msg = goshawk_msgs::msg;
 using nav_msgs::msg::Odometry;
 using octomap_msgs::msg::Octomap;

@@ -11,7 +11,7 @@ namespace {
 using Kind = Finding::Kind;
 
 constexpr double kAfterLanding_s = 1.0;  // how long after its end a leg still counts as flown
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kAnyClearance = std::numeric_limits<double>::infinity();  // [m]
 
 bool is_worse(const Verdict& a, const Verdict& b) {
   return !b.touched && (a.touched || a.clearance_m < b.clearance_m);
@@ -86,7 +86,7 @@ void Watch::judge_plan_anew(double now_s) {
   const auto left = std::ranges::find_if(
       plan_->track, [&](const Sample& s) { return plan_->start_s + s.t_s >= now_s; });
   if (left == plan_->track.end()) return;
-  auto verdict = check_->judge({left, plan_->track.end()}, plan_is_judged_ ? 0.0 : kInfinity);
+  auto verdict = check_->judge({left, plan_->track.end()}, plan_is_judged_ ? 0.0 : kAnyClearance);
   const bool is_news = !plan_is_judged_ || !verdict || verdict->touched;
   plan_is_judged_ = verdict.ok();
   if (!verdict || verdict->touched) plan_.reset();
@@ -96,7 +96,7 @@ void Watch::judge_plan_anew(double now_s) {
 // Of a leg, only what is below its smallest clearance matters; without one, only contacts.
 double Watch::below_m() const {
   if (!leg_) return 0.0;
-  return leg_->flown ? leg_->flown->clearance_m : kInfinity;
+  return leg_->flown ? leg_->flown->clearance_m : kAnyClearance;
 }
 
 // What was flown since the last time, joined to it without a gap.

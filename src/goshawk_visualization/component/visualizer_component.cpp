@@ -2,7 +2,7 @@
 
 #include "goshawk/conversions/vehicle.hpp"
 #include "goshawk/runtime/component.hpp"
-#include "goshawk/runtime/stage_reporter.hpp"
+#include "goshawk/stage/stage_reporter.hpp"
 #include "markers.hpp"
 #include "octomap_msgs.h"
 
@@ -25,6 +25,7 @@ void describe(Self& c, Visitor&& visit) {
 namespace {
 
 using namespace goshawk::runtime;
+using namespace goshawk::stage;
 namespace msg = goshawk_msgs::msg;
 using octomap_msgs::msg::Octomap;
 using visualization_msgs::msg::MarkerArray;
@@ -68,16 +69,11 @@ class VisualizerComponent : public Component {
   }
 
  private:
-  template <typename Message>
-  void send(const Publisher<Message>& publisher, const Message& message) {
-    if (auto status = publisher.publish(message); !status) reporter_.fault(status.error());
-  }
-
   template <typename... Markers>
   void send_markers(const Publisher<MarkerArray>& publisher, Markers&&... markers) {
     MarkerArray array;
     (array.markers().push_back(std::forward<Markers>(markers)), ...);
-    send(publisher, array);
+    reporter_.send(publisher, array);
   }
 
   void draw_map() {
@@ -97,7 +93,7 @@ class VisualizerComponent : public Component {
     if (!received) return reporter_.fault(received.error());
     const auto& [request, trajectory, polytopes, certificate] = *received;
     const std::int64_t start_ns = conversions::to_ns(m.start_time());
-    send(path_line_, path_line(trajectory, 0.05, start_ns));
+    reporter_.send(path_line_, path_line(trajectory, 0.05, start_ns));
     send_markers(corridor_, edge_marker("corridor", polytopes, 0.02, start_ns));
 
     const std::int64_t now_ns = node_.now_ns();
@@ -111,7 +107,7 @@ class VisualizerComponent : public Component {
     array.markers().push_back(face_marker(polytopes, now_ns));
     array.markers().push_back(edge_marker("corridor edges", polytopes, 0.015, now_ns));
     array.markers().push_back(trajectory_marker(trajectory, request.limits.v_max_m_s, now_ns));
-    send(plan_, array);
+    reporter_.send(plan_, array);
   }
 
   void on_odometry(const nav_msgs::msg::Odometry& m) {
