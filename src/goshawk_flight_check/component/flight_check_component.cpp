@@ -18,7 +18,6 @@ namespace {
 
 using namespace goshawk::runtime;
 using namespace goshawk::stage;
-using namespace goshawk::stage;
 namespace msg = goshawk_msgs::msg;
 using nav_msgs::msg::Odometry;
 using octomap_msgs::msg::Octomap;
