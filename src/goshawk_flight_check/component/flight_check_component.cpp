@@ -88,8 +88,7 @@ class FlightCheckComponent : public Component {
                                   "judged against it"));
     }
     const std::string_view bytes(reinterpret_cast<const char*>(m->data().data()), m->data().size());
-    auto check =
-        FlightCheck::from_payload(bytes, m->resolution(), config_.body, config_.options);
+    auto check = FlightCheck::from_payload(bytes, m->resolution(), config_.body, config_.options);
     if (!check) return reporter_.fault(check.error());
     watch_.set_map(*std::move(check));
   }

@@ -19,8 +19,8 @@ std::optional<std::string> discontinuity(const LiveSample& from, const LiveSampl
   // Twice the larger speed: generous for any vehicle within a gap of half a second.
   const double reach_m = kNoise_m + 2.0 * std::max(from.speed_m_s, to.speed_m_s) * gap_s;
   if (jump_m <= reach_m) return std::nullopt;
-  return fmt::format("odometry jumped by {:.2f} m within {:.3f} s, to ({:.2f}, {:.2f}, {:.2f})", jump_m,
-                     gap_s, p.x(), p.y(), p.z());
+  return fmt::format("odometry jumped by {:.2f} m within {:.3f} s, to ({:.2f}, {:.2f}, {:.2f})",
+                     jump_m, gap_s, p.x(), p.y(), p.z());
 }
 
 }  // namespace goshawk::flight_check

@@ -21,10 +21,11 @@ Status check_gaps(std::span<const Sample> track) {
     }
   }
   if (longest_s <= kLongestGap_s) return success();
-  return fail(ErrorCode::tracking_lost,
-              fmt::format("the track has a gap of {:.2f} s at {:.2f} s, so it cannot be judged: what "
-                          "was flown there is not known. Record it on a machine that keeps up",
-                          longest_s, at_s));
+  return fail(
+      ErrorCode::tracking_lost,
+      fmt::format("the track has a gap of {:.2f} s at {:.2f} s, so it cannot be judged: what "
+                  "was flown there is not known. Record it on a machine that keeps up",
+                  longest_s, at_s));
 }
 
 namespace {

@@ -7,7 +7,9 @@ namespace goshawk::flight_check {
 
 namespace {
 
-Eigen::Quaterniond unit(const Eigen::Quaterniond& q) { return q.normalized(); }
+Eigen::Quaterniond unit(const Eigen::Quaterniond& q) {
+  return q.normalized();
+}
 
 }  // namespace
 
@@ -81,8 +83,8 @@ void Judge::search(const Measured& a, const Measured& b) {
   const double least_m = (a.distance_m() + b.distance_m() - moved_m) / 2.0;
   if (b.distance_m() > 0.0 && least_m >= smallest_that_matters_m()) return;
   const double place = motion_.between(a.place, b.place);
-  const bool too_short = moved_m <= ClearanceMeter::kContact_m / 10.0 ||
-                         place <= a.place || place >= b.place;
+  const bool too_short =
+      moved_m <= ClearanceMeter::kContact_m / 10.0 || place <= a.place || place >= b.place;
   if (too_short) {
     if (b.distance_m() <= 0.0) record_contact(b);
     return;

@@ -68,10 +68,9 @@ void Watch::forget_track() {
 
 void Watch::end_track(const std::string& why) {
   forget_track();
-  findings_.push_back(
-      {Kind::event, 0,
-       fail(ErrorCode::tracking_lost,
-            why + ": what lies between was not flown, and judging begins anew")});
+  findings_.push_back({Kind::event, 0,
+                       fail(ErrorCode::tracking_lost,
+                            why + ": what lies between was not flown, and judging begins anew")});
 }
 
 void Watch::tick(double now_s) {

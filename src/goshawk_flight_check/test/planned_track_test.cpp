@@ -116,9 +116,9 @@ TEST(PlannedTrack, RefusesWhatIsNoTrajectory) {
   EXPECT_EQ(code({good}, 0.0), ErrorCode::invalid_input);
   EXPECT_EQ(code({good}, 1e-9), ErrorCode::invalid_input);
   EXPECT_EQ(code({good}), ErrorCode::ok);
-  for (const PlannedYaw& yaw : {PlannedYaw{.yaw_rad = NAN}, PlannedYaw{0.0, 1.0, {1.0, 2.0}},
-                                PlannedYaw{0.0, 0.0, {1.0, 2.0, 3.0}},
-                                PlannedYaw{0.0, 1.0, {1.0, NAN, 3.0}}}) {
+  for (const PlannedYaw& yaw :
+       {PlannedYaw{.yaw_rad = NAN}, PlannedYaw{0.0, 1.0, {1.0, 2.0}},
+        PlannedYaw{0.0, 0.0, {1.0, 2.0, 3.0}}, PlannedYaw{0.0, 1.0, {1.0, NAN, 3.0}}}) {
     EXPECT_EQ(planned_track(std::vector{good}, 0.01, yaw).code(), ErrorCode::invalid_input);
   }
   EXPECT_EQ(planned_track(std::vector{good}, 0.01, {}, NAN).code(), ErrorCode::invalid_input);

@@ -209,7 +209,8 @@ class MapPicture {
       for (const auto& face : visualization::face_polygons(polytope)) {
         for (const Vec3& p : face) corners.push_back(pixel(p));
       }
-      canvas_.polygon(visualization::convex_hull(std::move(corners)), kCorridor, {kCorridorEdge, 1.1});
+      canvas_.polygon(visualization::convex_hull(std::move(corners)), kCorridor,
+                      {kCorridorEdge, 1.1});
     }
   }
 

@@ -59,7 +59,8 @@ Result<Header> read_header(std::string_view bytes, std::string_view first_line) 
 Status check_resolution(double resolution_m) {
   // Below a micrometre and above a kilometre the bytes are damaged, and keys lose their meaning.
   if (resolution_m >= 1e-6 && resolution_m <= 1e3) return success();
-  return malformed(fmt::format("its resolution is {} m: from 1e-6 to 1e3 m can be read", resolution_m));
+  return malformed(
+      fmt::format("its resolution is {} m: from 1e-6 to 1e3 m can be read", resolution_m));
 }
 
 Status check_header(const Header& header) {

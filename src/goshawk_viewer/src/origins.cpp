@@ -34,10 +34,11 @@ Result<Origins> Origins::parse(const std::string& list) {
     } else if (is_origin(entry)) {
       origins.allowed_.push_back(entry);
     } else {
-      return fail(ErrorCode::invalid_parameter,
-                  fmt::format("origins: '{}' is not an origin; write it like http://127.0.0.1:8080, "
-                              "without a path",
-                              entry));
+      return fail(
+          ErrorCode::invalid_parameter,
+          fmt::format("origins: '{}' is not an origin; write it like http://127.0.0.1:8080, "
+                      "without a path",
+                      entry));
     }
   }
   return origins;

@@ -133,8 +133,7 @@ Status RecordedFlight::take_path(const Bytes& bytes) {
 Status RecordedFlight::take_octomap(const Bytes& bytes) {
   const auto m = decoded<octomap_msgs::msg::Octomap>(bytes);
   if (!m) return m.error();
-  const std::string_view payload(reinterpret_cast<const char*>(m->data().data()),
-                                 m->data().size());
+  const std::string_view payload(reinterpret_cast<const char*>(m->data().data()), m->data().size());
   const auto tree = map_server::read_binary_payload(payload, m->resolution());
   if (!tree) return tree.error();
   auto voxels = map_server::voxelize(**tree, {.box = {}, .max_voxels = kMostVoxels});

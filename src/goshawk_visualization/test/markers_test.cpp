@@ -36,8 +36,8 @@ TEST(VoxelMarker, ShowsTheSurfaceAlone) {
   EXPECT_EQ(m.type(), 6);
   EXPECT_DOUBLE_EQ(m.scale().x(), 0.5);
   for (const auto& p : m.points()) {
-    EXPECT_TRUE(p.x() == 1.25 || p.x() == 2.75 || p.y() == 2.25 || p.y() == 3.75 ||
-                p.z() == 3.25 || p.z() == 4.75);
+    EXPECT_TRUE(p.x() == 1.25 || p.x() == 2.75 || p.y() == 2.25 || p.y() == 3.75 || p.z() == 3.25 ||
+                p.z() == 4.75);
   }
 }
 
@@ -83,8 +83,8 @@ TEST(PathLine, GoesFromStartToEndInStepsThatAreShortEnough) {
   ASSERT_EQ(path.poses().size(), 32U);
   EXPECT_DOUBLE_EQ(path.poses().back().pose().position().x(), 3.0);
   for (std::size_t k = 1; k < path.poses().size(); ++k) {
-    const double step_m = path.poses()[k].pose().position().x() -
-                          path.poses()[k - 1].pose().position().x();
+    const double step_m =
+        path.poses()[k].pose().position().x() - path.poses()[k - 1].pose().position().x();
     EXPECT_GT(step_m, 0.0);
     EXPECT_LE(step_m, 3.0 * 0.05 / 1.52 + 1e-9);
   }

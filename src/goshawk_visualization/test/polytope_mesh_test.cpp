@@ -160,7 +160,9 @@ TEST(Edges, LieOnTwoPlanesEachAndAreListedOnce) {
   }
 }
 
-TEST(Edges, OfAnEmptyPolytopeAreNone) { EXPECT_TRUE(edges(closed_mesh(Polytope{})).empty()); }
+TEST(Edges, OfAnEmptyPolytopeAreNone) {
+  EXPECT_TRUE(edges(closed_mesh(Polytope{})).empty());
+}
 
 TEST(ConvexHull, HoldsEveryPointAndTurnsLeftOnly) {
   Random random(9);

@@ -60,9 +60,9 @@ struct Options {
 ///
 /// It leaves no gap: a body whose points all move by at most L between two poses with clearances c0
 /// and c1 stays (c0 + c1 - L) / 2 away from everything in between. A part of the flight for which
-/// that bound is not good enough is halved until it is, so that far from obstacles most samples need
-/// no measurement (conservative advancement from both ends; Mirtich, 1996). L is the distance flown
-/// plus the angle turned times Body::reach_m().
+/// that bound is not good enough is halved until it is, so that far from obstacles most samples
+/// need no measurement (conservative advancement from both ends; Mirtich, 1996). L is the distance
+/// flown plus the angle turned times Body::reach_m().
 class FlightCheck {
  public:
   /// @param map_file an OctoMap file, .bt or .ot

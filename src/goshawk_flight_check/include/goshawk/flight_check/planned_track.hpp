@@ -16,9 +16,9 @@ struct PlannedPiece {
 
 /// The yaw of a flight: a uniform quadratic B-spline over time, or one yaw throughout.
 struct PlannedYaw {
-  double yaw_rad = 0.0;             // if there are no points
-  double step_s = 0.0;              // [s] > 0, between the spline's knots
-  std::vector<double> points_rad{}; // none, or at least three
+  double yaw_rad = 0.0;              // if there are no points
+  double step_s = 0.0;               // [s] > 0, between the spline's knots
+  std::vector<double> points_rad{};  // none, or at least three
 
   /// @param t_s [s] after the flight's start; before and after the spline, the yaw of its end
   double at(double t_s) const;

@@ -17,10 +17,10 @@ struct ServerOptions {
   int port = 8765;                    // 0: any that is free
   std::string name = "goshawk";
   std::string origins = kDefaultOrigins;  // as Origins::parse() reads them
-  int clients = 16;                      // at once
-  std::size_t queue_bytes = 32U << 20U;  // unsent to one client; what is beyond is dropped
-  double full_queue_s = 10.0;            // a client that never reads is closed after that
-  int client_messages_per_s = 500;       // a client that sends more is closed
+  int clients = 16;                       // at once
+  std::size_t queue_bytes = 32U << 20U;   // unsent to one client; what is beyond is dropped
+  double full_queue_s = 10.0;             // a client that never reads is closed after that
+  int client_messages_per_s = 500;        // a client that sends more is closed
 };
 
 /// A topic as clients see it.
@@ -53,7 +53,8 @@ enum class StatusLevel { info = 0, warning = 1, error = 2 };
 /// be called from any thread; one thread of its own serves the sockets.
 class Server {
  public:
-  /// @return invalid_parameter for a bad address, port or list of origins; io_failed if the port is in use
+  /// @return invalid_parameter for a bad address, port or list of origins; io_failed if the port is
+  /// in use
   static Result<std::unique_ptr<Server>> start(const ServerOptions& options);
   ~Server();
 
