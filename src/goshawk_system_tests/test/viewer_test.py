@@ -247,7 +247,7 @@ class LiveView(StackTest):
         outcome = self.sandbox.goshawk("run", "viewer_bridge:second", "--ros-args", "-p",
                                        f"port:={self.port}")
         self.assertEqual(outcome.status, 2, str(outcome))
-        self.assertIn(f"port {self.port} of 127.0.0.1 cannot be had", outcome.err)
+        self.assertIn(f"port {self.port} of 127.0.0.1 cannot be used", outcome.err)
 
 
 if __name__ == "__main__":

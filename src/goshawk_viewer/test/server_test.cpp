@@ -1,5 +1,6 @@
 #include "goshawk/viewer_bridge/server.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -67,8 +68,6 @@ TEST_F(BridgeServer, TellsItsChannelsAndSendsToWhoSubscribed) {
   const auto events = events_of(1);
   ASSERT_EQ(events.size(), 1u);
   EXPECT_EQ(events[0].channel, 3u);
-  EXPECT_TRUE(server_->has_subscriber(3));
-  EXPECT_FALSE(server_->has_subscriber(4));
   const std::vector<unsigned char> cdr{9, 8, 7};
   server_->send(4, 1, cdr);
   server_->send(3, 0x0102030405060708, cdr);
@@ -159,7 +158,7 @@ TEST_F(BridgeServer, RefusesStrangersWithASentence) {
   EXPECT_THAT(first.shake_hands(), StartsWith("HTTP/1.1 101"));
   ASSERT_TRUE(comes_true([&] { return server_->clients() == 1; }));
   RawClient second(server_->port());
-  EXPECT_THAT(second.shake_hands(), HasSubstr("there are 1 clients already"));
+  EXPECT_THAT(second.shake_hands(), HasSubstr("the limit of 1 clients is reached"));
 }
 
 TEST_F(BridgeServer, SaysWhyItCannotListen) {
@@ -169,7 +168,7 @@ TEST_F(BridgeServer, SaysWhyItCannotListen) {
   const auto busy = Server::start(options);
   ASSERT_FALSE(busy);
   EXPECT_EQ(busy.code(), ErrorCode::io_failed);
-  EXPECT_THAT(busy.error().message, HasSubstr("port " + std::to_string(server_->port())));
+  EXPECT_THAT(busy.error().message, HasSubstr(fmt::format("port {}", server_->port())));
   options.port = 70000;
   EXPECT_EQ(Server::start(options).code(), ErrorCode::invalid_parameter);
   options.port = 0;
