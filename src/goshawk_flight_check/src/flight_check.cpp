@@ -45,7 +45,7 @@ std::string sample_fault(const Sample& s, const Sample* previous) {
 Status check_track(std::span<const Sample> track) {
   if (track.empty()) {
     return fail(ErrorCode::invalid_input,
-                "the flight has no sample to judge: record its odometry or sample its trajectory");
+                "the flight has no sample to judge: record its odometry, or sample its trajectory");
   }
   for (std::size_t i = 0; i < track.size(); ++i) {
     const std::string fault = sample_fault(track[i], i > 0 ? &track[i - 1] : nullptr);
@@ -117,10 +117,10 @@ Result<FlightCheck> FlightCheck::from_tree(std::unique_ptr<octomap::OcTree> tree
   if (auto status = body.check(); !status) return status.error();
   if (auto status = check_options(options); !status) return status.error();
   if (tree == nullptr || tree->getRoot() == nullptr) {
-    return fail(ErrorCode::map_empty, "the map holds no voxel; make the map again");
+    return fail(ErrorCode::map_empty, "the map holds no voxel: create the map again");
   }
   if (options.count_unknown_as_obstacle) occupy_unknown(*tree);
-  // FCL passes over an inner node that does not say what its children hold.
+  // FCL skips an inner node that does not know what its children hold.
   tree->updateInnerOccupancy();
   return FlightCheck(std::make_unique<Implementation>(std::move(tree), body, options));
 }

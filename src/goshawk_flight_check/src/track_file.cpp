@@ -1,5 +1,7 @@
 #include "goshawk/flight_check/track_file.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <fstream>
@@ -60,7 +62,7 @@ Result<std::vector<Row>> read_table(const std::filesystem::path& file,
       const std::string part = column < parts.size() ? parts[column] : "";
       const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), value);
       if (error != std::errc{} || end != part.data() + part.size()) {
-        return wrong(file, "line " + std::to_string(number) + ": '" + part + "' is no number");
+        return wrong(file, fmt::format("line {}: '{}' is not a number", number, part));
       }
       row.push_back(value);
     }

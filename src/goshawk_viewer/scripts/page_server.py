@@ -54,7 +54,7 @@ class Site:
         self.folders[name] = pathlib.Path(folder).resolve()
 
     def find(self, path):
-        """@return bytes, a file's path, or None. Nothing outside of the folders is ever found."""
+        """@return bytes, a file's path, or None; never anything outside of the folders"""
         if path in self.parts:
             return self.parts[path]
         if "\0" in path:
@@ -71,7 +71,7 @@ def handler_of(site):
     class Handler(http.server.BaseHTTPRequestHandler):
         protocol_version = "HTTP/1.1"
         server_version = "goshawk"
-        timeout = 30  # a client that goes quiet does not keep a thread
+        timeout = 30  # a silent client does not hold its thread for ever
 
         def do_GET(self):
             self.answer(with_body=True)
@@ -119,7 +119,7 @@ def handler_of(site):
                 except ValueError:
                     self.head(416, kind, 0, ("Content-Range", f"bytes */{size}"))
                     return
-                if "If-Range" in self.headers:  # nothing here has a validator to compare with
+                if "If-Range" in self.headers:  # there are no validators to compare with
                     part = None
                 first, last = part or (0, size - 1)
                 extra = [("Content-Range", f"bytes {first}-{last}/{size}")] if part else []
@@ -131,7 +131,7 @@ def handler_of(site):
             file.seek(first)
             while count > 0:
                 chunk = file.read(min(CHUNK, count))
-                if not chunk:  # it became shorter meanwhile: the client sees a broken answer
+                if not chunk:  # the file became shorter: the client sees a broken answer
                     self.close_connection = True
                     return
                 self.wfile.write(chunk)
@@ -150,7 +150,7 @@ def handler_of(site):
 
 
 def start(site, port):
-    """@return the server, which answers in threads of its own; raises OSError on a busy port"""
+    """@return the server, which has its own threads; raises OSError if the port is busy"""
     server = http.server.ThreadingHTTPServer(("127.0.0.1", port), handler_of(site))
     server.daemon_threads = True
     threading.Thread(target=server.serve_forever, daemon=True).start()

@@ -1,13 +1,13 @@
 #!/usr/bin/python3
-"""goshawk view: shows a flight, a recording, or what flies now, in a browser.
+"""goshawk view: shows a flight, a recording, or a live flight in a browser.
 
-    goshawk view                     the newest flight of ./flights
-    goshawk view FLIGHT_FOLDER       that one
-    goshawk view FILE.mcap           what was recorded
-    goshawk view --live              what flies now; starts a bridge where none listens
-    goshawk view --foxglove ...      the same in Foxglove Studio, with a layout of ours
+    goshawk view                     the newest flight in ./flights
+    goshawk view FLIGHT_FOLDER       this flight
+    goshawk view FILE.mcap           this recording
+    goshawk view --live              the flight that is running; starts a bridge if none listens
+    goshawk view --foxglove ...      the same in Foxglove Studio, with Goshawk's layout
 
-Serves it on this machine until Ctrl-C.
+Serves the page on this machine until Ctrl-C.
 """
 
 import argparse
@@ -29,7 +29,7 @@ import page_server
 DONE, NOT_DONE, WRONG_CALL = 0, 1, 2
 MARK = "@FLIGHT@"
 LARGEST_READ_FIRST = 64 << 20  # [byte] of a recording
-AROUND = (5.0, 4.0, 1.0)  # [m] what a live picture shows at least
+AROUND = (5.0, 4.0, 1.0)  # [m] least half-size of a live picture
 
 
 class Fault(Exception):
@@ -46,20 +46,20 @@ def parse(arguments):
                                      "  goshawk view --live --foxglove")
     parser.add_argument("what", nargs="?", help="flight folder, or MCAP recording (default: the "
                         "newest folder in ./flights)")
-    parser.add_argument("--live", action="store_true", help="look at what flies now")
+    parser.add_argument("--live", action="store_true", help="show the flight that is running")
     parser.add_argument("--foxglove", action="store_true", help="in Foxglove Studio, which "
                         "tools/setup --viewer fetches")
-    parser.add_argument("--port", type=int, default=8080, help="of the page (default 8080; 0: any)")
-    parser.add_argument("--bridge", default="ws://127.0.0.1:8765", help="where the bridge listens")
+    parser.add_argument("--port", type=int, default=8080, help="of the page (default 8080; 0: any free one)")
+    parser.add_argument("--bridge", default="ws://127.0.0.1:8765", help="address of the bridge")
     parser.add_argument("--no-open", action="store_true", help="do not start a browser")
-    parser.add_argument("--check", action="store_true", help="only say what would be shown")
+    parser.add_argument("--check", action="store_true", help="only print what would be shown")
     parser.add_argument("--json", action="store_true", help="print one JSON object")
     parser.add_argument("--prefix", help=argparse.SUPPRESS)
     options = parser.parse_args(arguments)
     if options.live and options.what:
-        parser.error("a flight or recording, and --live: one of them")
+        parser.error("give either a flight or recording, or --live: one of them")
     if not 0 <= options.port <= 65535:
-        parser.error("--port goes from 0 to 65535")
+        parser.error("--port must be from 0 to 65535")
     return options
 
 
@@ -72,7 +72,7 @@ def newest_flight():
 
 
 def readable(file):
-    """@return the file, opened once; raises a Fault where it cannot be read"""
+    """@return the file; raises a Fault if it cannot be read"""
     try:
         with open(file, "rb") as opened:
             opened.read(1)
@@ -83,13 +83,13 @@ def readable(file):
 
 
 def part_of(what, name):
-    """The file of that name in a flight folder; a file stands for itself."""
+    """@return the file of that name in a flight folder, or the file itself"""
     path = pathlib.Path(what or newest_flight())
     return readable(path / name if path.is_dir() else path)
 
 
 def page_of_recording(prefix, recording, template=None):
-    """The page of a flight, made from a recording alone. @return its bytes"""
+    """@return the bytes of a page that is made from a recording alone"""
     with tempfile.TemporaryDirectory(prefix="goshawk_view_") as folder:
         page = pathlib.Path(folder) / "flight.html"
         template = template or f"{prefix}/share/goshawk/viewer/page.html"
@@ -105,7 +105,7 @@ def page_of_recording(prefix, recording, template=None):
 
 
 def places_flown(prefix, recording):
-    """Where the recorded flight was: what a picture of it is about. @return [[x, y, z], ...]"""
+    """@return where the recorded flight was, to point the camera: [[x, y, z], ...]"""
     if recording.stat().st_size > LARGEST_READ_FIRST:
         return []
     try:
@@ -114,7 +114,7 @@ def places_flown(prefix, recording):
             template.flush()
             flight = json.loads(page_of_recording(prefix, recording, template.name))
     except (Fault, ValueError):
-        return []  # the studio says itself what it cannot read
+        return []  # the studio itself says what it cannot read
     track = flight["flown"]["p"]
     places = [track[k:k + 3] for k in range(0, len(track), 3)]
     for leg in flight["legs"]:
@@ -123,7 +123,7 @@ def places_flown(prefix, recording):
 
 
 def place_now(prefix):
-    """Around where a vehicle of this domain is now, in a list; [] where none says so soon."""
+    """@return corners around the vehicle of this domain; [] if no odometry comes within 3 s"""
     asked = subprocess.run([f"{prefix}/bin/goshawk", "topic", "echo", "odom", "--once", "--json",
                             "--timeout", "3"], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                            stderr=subprocess.DEVNULL, text=True)
@@ -148,7 +148,7 @@ def place_of(bridge):
     rest = bridge.removeprefix("ws://")
     host, _, port = rest.rstrip("/").rpartition(":")
     if rest == bridge or not host or not port.isdigit() or not 0 < int(port) < 65536:
-        raise Fault("invalid_parameter", f"--bridge is like ws://127.0.0.1:8765, not '{bridge}'",
+        raise Fault("invalid_parameter", f"--bridge must look like ws://127.0.0.1:8765, not '{bridge}'",
                     WRONG_CALL)
     return host, int(port)
 
@@ -242,7 +242,7 @@ def own_site(options):
     site = page_server.Site()
     if options.live:
         site.add("/", live_page(options.prefix, options.bridge).encode())
-        return site, f"what flies now, by {options.bridge}"
+        return site, f"the flight at {options.bridge}"
     file = part_of(options.what, "flight.html")
     is_page = file.suffix == ".html"
     site.add("/", file.read_bytes() if is_page else page_of_recording(options.prefix, file))
@@ -261,7 +261,7 @@ def foxglove_site(options):
     site.add_folder("/", share / "studio")
     site.add("/", (share / "studio/index.html").read_bytes())
     if options.live:
-        shown, source = f"what flies now, by {options.bridge}", {"bridge": options.bridge}
+        shown, source = f"the flight at {options.bridge}", {"bridge": options.bridge}
         source["places"] = [] if options.check else place_now(options.prefix)
     else:
         recording = part_of(options.what, "flight.mcap")
@@ -273,14 +273,14 @@ def foxglove_site(options):
 
 
 def without_source_map(script):
-    """Half of the studio's largest script is a map for its developers, at the end."""
+    """The second half of the studio's largest script is a source map."""
     text = script.read_bytes()
     mark = text.rfind(b"\n//# sourceMappingURL=data:")
     return text if mark < 0 else text[:mark]
 
 
 def studio_files(prefix):
-    """What npm brought of Foxglove Studio, by its name on the page."""
+    """@return Foxglove Studio's files from npm, by their names on the page"""
     modules = pathlib.Path(os.environ.get("GOSHAWK_NODE_MODULES") or
                            pathlib.Path(prefix).parent / "build/node/node_modules")
     files = {"/assets/index.js": modules / "@foxglove/studio-base/assets/index.js",
@@ -289,7 +289,7 @@ def studio_files(prefix):
     for file in files.values():
         if not file.is_file():
             raise Fault("io_failed", f"Foxglove Studio is not installed ({file} is missing): "
-                        "tools/setup --viewer fetches it, or leave --foxglove out")
+                        "tools/setup --viewer installs it, or leave --foxglove out")
     return files
 
 

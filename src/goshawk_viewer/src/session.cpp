@@ -1,5 +1,7 @@
 #include "session.hpp"
 
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 
 namespace goshawk::viewer_bridge {
@@ -38,7 +40,7 @@ Session::Answer Session::on_text(const std::string& text,
       for (const auto& s : message.at("subscriptions")) {
         const auto channel = id_of(s.at("channelId"));
         if (!known(channel)) {
-          answer.warnings.push_back("there is no channel " + std::to_string(channel));
+          answer.warnings.push_back(fmt::format("there is no channel {}", channel));
           continue;
         }
         if (subscriptions_.size() >= kMostChannels) break;
@@ -69,10 +71,10 @@ Session::Answer Session::on_text(const std::string& text,
     } else if (op == "unadvertise") {
       for (const auto& id : message.at("channelIds")) published_.erase(id_of(id));
     } else {
-      answer.warnings.push_back("this bridge does not know '" + op.substr(0, 40) + "'");
+      answer.warnings.push_back(fmt::format("unknown operation '{}'", op.substr(0, 40)));
     }
   } catch (const Json::exception&) {
-    answer.close = "this is no message of foxglove.websocket.v1";
+    answer.close = "not a foxglove.websocket.v1 message";
   }
   return answer;
 }
@@ -80,7 +82,7 @@ Session::Answer Session::on_text(const std::string& text,
 Session::Answer Session::on_binary(const std::string& bytes) {
   Answer answer;
   if (bytes.size() < 5 || bytes[0] != 1) {
-    answer.close = "this binary is no message of foxglove.websocket.v1";
+    answer.close = "not a binary foxglove.websocket.v1 message";
     return answer;
   }
   std::uint32_t channel = 0;
@@ -89,8 +91,7 @@ Session::Answer Session::on_binary(const std::string& bytes) {
   }
   const auto found = published_.find(channel);
   if (found == published_.end()) {
-    answer.warnings.push_back("channel " + std::to_string(channel) +
-                              " was not advertised by this client");
+    answer.warnings.push_back(fmt::format("channel {} was not advertised by this client", channel));
     return answer;
   }
   ClientEvent event;

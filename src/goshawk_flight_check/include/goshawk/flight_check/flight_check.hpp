@@ -32,17 +32,17 @@ struct Sample {
 /// What lies in a long gap between samples of a flown track is not known, so it cannot be judged.
 inline constexpr double kLongestGap_s = 0.5;
 
-/// @return tracking_lost with the longest gap where it is above kLongestGap_s
+/// @return tracking_lost, naming the longest gap, if it is above kLongestGap_s
 Status check_gaps(std::span<const Sample> track);
 
 struct Verdict {
   bool touched = false;
   /// [m] smallest distance between body and obstacles, at most Options::tolerance_m above the
-  /// true one; 0 where touched, infinity where the map has no obstacle
+  /// true one; 0 if touched, infinity if the map has no obstacle
   double clearance_m = 0.0;
-  double clearance_t_s = 0.0;  // [s] when; the first contact where touched
-  /// [m] where: the nearest point of an obstacle; the contact where touched; the vehicle's own
-  /// position where the map has no obstacle
+  double clearance_t_s = 0.0;  // [s] when; the first contact if touched
+  /// [m] where: the nearest point of an obstacle; the contact if touched; the vehicle's own
+  /// position if the map has no obstacle
   Vec3 clearance_place_map = Vec3::Zero();
   std::int64_t samples = 0;  // how many samples were judged
   std::int64_t queries = 0;  // how many poses were measured
