@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "common/call.hpp"
 #include "common/child.hpp"
 #include "common/measure.hpp"
 #include "goshawk/conversions/geometry.hpp"
@@ -55,7 +56,7 @@ class SetpointWriter : public Running {
  public:
   explicit SetpointWriter(Context& context)
       : Running(context, "setpoint_writer"),
-        publisher_(node().advertise<msg::ThrustAttitude>("command", Qos::best_effort())) {
+        publisher_(node().advertise<msg::AttitudeSetpoint>("command", Qos::best_effort())) {
     node().every(kSetpointPeriod_s, [this] {
       message_.thrust(++number_);
       message_.header(conversions::make_header(node().now_ns()));
@@ -64,8 +65,8 @@ class SetpointWriter : public Running {
   }
 
  private:
-  Publisher<msg::ThrustAttitude> publisher_;
-  msg::ThrustAttitude message_;
+  Publisher<msg::AttitudeSetpoint> publisher_;
+  msg::AttitudeSetpoint message_;
   double number_ = 0.0;
 };
 
@@ -98,8 +99,9 @@ class SetpointReader : public Running {
  public:
   explicit SetpointReader(Context& context) : Running(context, "setpoint_reader") {
     us.reserve(1 << 16);
-    node().subscribe<msg::ThrustAttitude>(
-        "command", Qos::best_effort(), [this](const msg::ThrustAttitude& m, const MessageInfo& i) {
+    node().subscribe<msg::AttitudeSetpoint>(
+        "command", Qos::best_effort(),
+        [this](const msg::AttitudeSetpoint& m, const MessageInfo& i) {
           if (us.empty()) first_ = m.thrust();
           last_ = m.thrust();
           us.push_back(double(i.received_ns - conversions::to_ns(m.header().stamp())) * 1e-3);
@@ -159,8 +161,10 @@ Sample measure(const Arrangement& arrangement, bool with_maps, double settle_s, 
   for (const auto& other : arrangement.others) {
     const std::string roles = without_maps(other, with_maps);
     if (roles.empty()) continue;
+    Call call;
+    call["roles"] = roles;
     children.push_back(std::make_unique<Child>(
-        std::vector<std::string>{this_program(), "--roles", roles}, domain));
+        std::vector<std::string>{this_program(), call.dump()}, domain));
   }
   for (auto& node : here) node->start();
   wait_for(reader, kMet, kMeet_s);

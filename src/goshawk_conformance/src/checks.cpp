@@ -1,5 +1,7 @@
 #include "checks.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -18,12 +20,10 @@ Vec3 vec(const geometry_msgs::msg::Vector3& v) {
 }
 
 std::string at(const char* what, std::size_t k, const char* fault, double by) {
-  char text[160];
-  std::snprintf(text, sizeof text, "%s %zu %s (%.3g)", what, k, fault, by);
-  return text;
+  return fmt::format("{} {} {} ({:.3g})", what, k, fault, by);
 }
 
-/// The point is in the open inside of an occupied voxel, or outside of the map.
+/// The point is in the interior of an occupied voxel, or outside the map.
 bool is_blocked(const VoxelGrid& grid, const Vec3& p) {
   const Vec3 g = grid.geometry.to_grid(p);
   const double slack = kTolerance / grid.geometry.resolution_m;
@@ -50,15 +50,14 @@ template <typename Message>
 std::string fault_of_head(const Message& m, const VoxelGrid& grid) {
   if (m.header().frame_id() != "map") return "its frame is '" + m.header().frame_id() + "'";
   if (m.header().stamp().sec() == 0) return "it has no stamp";
-  if (m.implementation().empty()) return "it does not say who made it";
+  if (m.implementation().empty()) return "its implementation is empty";
   if (m.map_version() != grid.version) {
-    return "it names map version " + std::to_string(m.map_version()) + ", which is " +
-           std::to_string(grid.version);
+    return fmt::format("it names map version {} instead of {}", m.map_version(), grid.version);
   }
   return "";
 }
 
-/// @return [m] how far outside; negative inside; infinity where it is no polytope
+/// @return [m] how far outside; negative inside; infinity if it is not a polytope
 double outside(const msg::Polytope& polytope, const Vec3& p) {
   const auto& n = polytope.normals();
   const auto& b = polytope.offsets();
@@ -102,34 +101,54 @@ Vec3 derivative(const msg::BezierPiece& piece, int order, std::size_t j) {
   if (order == 0) return vec(c[j]);
   const double duration_s = piece.duration();
   if (order == 1) return 5.0 / duration_s * (vec(c[j + 1]) - vec(c[j]));
+  if (order == 3) {
+    return 60.0 / (duration_s * duration_s * duration_s) *
+           (vec(c[j + 3]) - 3.0 * vec(c[j + 2]) + 3.0 * vec(c[j + 1]) - vec(c[j]));
+  }
   return 20.0 / (duration_s * duration_s) * (vec(c[j + 2]) - 2.0 * vec(c[j + 1]) + vec(c[j]));
 }
 
-double size_of(const Vec3& v, int norm) {
-  return norm == 0 ? v.norm() : v.cwiseAbs().maxCoeff();
+/// How much of a limit a vector uses: 1 at the limit.
+double usage(const Vec3& v, int norm, double limit, double vertical) {
+  using namespace goshawk_msgs::msg::Limits_Constants;
+  if (norm == NORM_EUCLIDEAN) return v.norm() / limit;
+  if (norm == NORM_PER_AXIS) return v.cwiseAbs().maxCoeff() / limit;
+  return std::max(v.head<2>().norm() / limit,
+                  std::abs(v.z()) / (vertical > 0.0 ? vertical : limit));
 }
 
-std::string fault_of_piece(const msg::BezierPiece& piece, std::size_t k,
+std::string fault_of_piece(const msg::BezierPiece& piece, std::size_t k, double begin_s,
                            const std::vector<msg::Polytope>& polytopes, const msg::Limits& limits) {
   if (!(piece.duration() > 0.0)) return at("piece", k, "lasts [s]", piece.duration());
   if (piece.polytope() >= polytopes.size()) {
-    return at("piece", k, "names a polytope that is not there", double(piece.polytope()));
+    return at("piece", k, "names a polytope that does not exist", double(piece.polytope()));
   }
-  double position = -1.0, velocity = -1.0, acceleration = -1.0;
+  const msg::Polytope& home = polytopes[piece.polytope()];
+  double position = -1.0, velocity = 0.0, acceleration = 0.0, jerk = 0.0;
   for (std::size_t j = 0; j < 6; ++j) {
-    const double out = outside(polytopes[piece.polytope()], derivative(piece, 0, j));
-    position = std::max(position, out);
-    if (j < 5) velocity = std::max(velocity, size_of(derivative(piece, 1, j), limits.norm()));
-    if (j < 4) {
-      acceleration = std::max(acceleration, size_of(derivative(piece, 2, j), limits.norm()));
+    position = std::max(position, outside(home, derivative(piece, 0, j)));
+    if (j < 5) {
+      velocity = std::max(velocity, usage(derivative(piece, 1, j), limits.norm(), limits.v_max(),
+                                          limits.v_max_vertical()));
     }
+    if (j < 4) {
+      acceleration = std::max(acceleration, usage(derivative(piece, 2, j), limits.norm(),
+                                                  limits.a_max(), limits.a_max_vertical()));
+    }
+    if (j < 3) jerk = std::max(jerk, derivative(piece, 3, j).norm());
   }
   if (!(position <= kTolerance)) return at("piece", k, "leaves its polytope [m]", position);
-  if (!(velocity <= limits.v_max() + kTolerance)) return at("piece", k, "is too fast", velocity);
-  if (!(acceleration <= limits.a_max() + kTolerance)) {
+  if (!(velocity <= 1.0 + kTolerance)) return at("piece", k, "is too fast", velocity);
+  if (!(acceleration <= 1.0 + kTolerance)) {
     return at("piece", k, "accelerates too much", acceleration);
   }
-  return "";
+  if (limits.j_max() > 0.0 && !(jerk <= limits.j_max() + kTolerance)) {
+    return at("piece", k, "has too much jerk", jerk);
+  }
+  if (home.valid_from() == 0.0 && home.valid_until() == 0.0) return "";
+  const double by_s =
+      std::max(home.valid_from() - begin_s, begin_s + piece.duration() - home.valid_until());
+  return by_s <= kTolerance ? "" : at("piece", k, "outlasts its polytope [s]", by_s);
 }
 
 double state_error(const msg::FlatState& state, const msg::BezierPiece& piece, bool end) {
@@ -144,7 +163,7 @@ double state_error(const msg::FlatState& state, const msg::BezierPiece& piece, b
 std::string fault_of(const msg::Path& path, const msg::PlanRequest& sent, const VoxelGrid& grid) {
   if (auto fault = fault_of_head(path, grid); !fault.empty()) return fault;
   const auto& w = path.waypoints();
-  if (w.size() < 2) return "it has " + std::to_string(w.size()) + " waypoints";
+  if (w.size() < 2) return fmt::format("it has {} waypoints", w.size());
   if ((vec(w.front()) - vec(sent.start().position())).norm() > kTolerance) {
     return "it does not begin at the start";
   }
@@ -167,12 +186,12 @@ std::string fault_of(const msg::Corridor& corridor, const msg::Path& sent, const
   const auto& w = corridor.waypoints();
   const auto& polytopes = corridor.polytopes();
   if (polytopes.empty() || w.size() != polytopes.size() + 1) {
-    return std::to_string(polytopes.size()) + " polytopes need one waypoint more, but there are " +
-           std::to_string(w.size());
+    return fmt::format("{} polytopes need one waypoint more, but there are {}", polytopes.size(),
+                       w.size());
   }
   if ((vec(w.front()) - vec(sent.waypoints().front())).norm() > kTolerance ||
       (vec(w.back()) - vec(sent.waypoints().back())).norm() > kTolerance) {
-    return "it does not join the ends of the path";
+    return "its ends are not those of the path";
   }
   for (std::size_t k = 0; k < polytopes.size(); ++k) {
     const double out =
@@ -181,7 +200,7 @@ std::string fault_of(const msg::Corridor& corridor, const msg::Path& sent, const
     if (auto fault = fault_of_space(polytopes[k], k, grid); !fault.empty()) return fault;
   }
   if (polytopes.size() > 1 && !(corridor.min_overlap_radius() > 0.0)) {
-    return "neighbours share no ball, by its own figure";
+    return "its own min_overlap_radius is not above zero";
   }
   return "";
 }
@@ -192,15 +211,20 @@ std::string fault_of(const msg::BezierTrajectory& t, const msg::Corridor& sent,
   if (t.pieces().empty()) return "it has no pieces";
   if (!(t.polytopes() == sent.polytopes())) return "its polytopes are not the corridor's";
   const auto& limits = sent.request().limits();
+  double begin_s = 0.0;
   for (std::size_t k = 0; k < t.pieces().size(); ++k) {
     const auto& piece = t.pieces()[k];
-    if (auto fault = fault_of_piece(piece, k, t.polytopes(), limits); !fault.empty()) return fault;
+    if (auto fault = fault_of_piece(piece, k, begin_s, t.polytopes(), limits); !fault.empty()) {
+      return fault;
+    }
+    begin_s += piece.duration();
     if (k == 0) continue;
     for (int order = 0; order < 3; ++order) {
       const double jump = (derivative(t.pieces()[k - 1], order, std::size_t(5 - order)) -
                            derivative(piece, order, 0))
                               .norm();
-      if (!(jump <= kTolerance)) return at("piece", k, "jumps from the one before", jump);
+      if (!(jump <= kTolerance))
+        return at("piece", k, "is not continuous with the previous piece", jump);
     }
   }
   const double start = state_error(sent.request().start(), t.pieces().front(), false);

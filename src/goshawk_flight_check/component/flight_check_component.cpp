@@ -40,12 +40,20 @@ std::vector<PlannedPiece> pieces_of(const Trajectory& trajectory) {
 }
 
 Result<Plan> plan_of(const msg::CommittedTrajectory& m) {
-  const auto received = conversions::from_msg(m.trajectory());
-  if (!received) return received.error();
-  const PlannedYaw yaw{m.yaw(), m.trajectory().yaw_step(), m.trajectory().yaw_points()};
-  auto track = planned_track(pieces_of(received->trajectory), kPlanStep_s, yaw);
-  if (!track) return track.error();
-  return Plan{received->request.id, seconds(conversions::to_ns(m.start_time())), *std::move(track)};
+  const auto committed = conversions::from_msg(m);
+  if (!committed) return committed.error();
+  const auto yaw = [&](double t_s) { return committed->yaw_at(t_s); };
+  const auto track_of = [&](const CertifiedTrajectory& part, double start_s) {
+    return planned_track(pieces_of(part.trajectory()), kPlanStep_s, yaw, start_s);
+  };
+  auto nominal = track_of(committed->nominal(), 0.0);
+  if (!nominal) return nominal.error();
+  Plan plan{committed->id(), seconds(committed->start_time_ns()), *std::move(nominal), {}};
+  if (!committed->stop()) return plan;
+  auto stop = track_of(committed->stop()->trajectory, committed->stop()->after_s);
+  if (!stop) return stop.error();
+  plan.stop = *std::move(stop);
+  return plan;
 }
 
 /// octomap_binary, committed_trajectory, odom or odom_true -> stage_report: a verdict on each
@@ -53,7 +61,9 @@ Result<Plan> plan_of(const msg::CommittedTrajectory& m) {
 class FlightCheckComponent : public Component {
  public:
   explicit FlightCheckComponent(Node& node)
-      : node_(node), config_(node.parameters<Config>()), reporter_(node, "fcl") {
+      : node_(node),
+        config_(node.parameters<Config>()),
+        reporter_(node, StageRole::flight_check, "fcl") {
     if (auto status = config_.body.check(); !status) throw StartupFault(status.error());
     node.subscribe<Octomap>("octomap_binary", Qos::latched(),
                             [this](const Octomap& m, const MessageInfo&) { new_map_ = m; });
@@ -69,6 +79,9 @@ class FlightCheckComponent : public Component {
                                if (!std::exchange(knows_truth_, true)) watch_.forget_track();
                                on_odometry(m);
                              });
+    node.subscribe<msg::VehicleStatus>(
+        "vehicle_status", Qos::best_effort(),
+        [this](const msg::VehicleStatus& m, const MessageInfo&) { on_status(m); });
     node.every(config_.period_s, [this] {
       read_map();
       watch_.tick(seconds(node_.now_ns()));
@@ -99,7 +112,7 @@ class FlightCheckComponent : public Component {
     if (auto plan = plan_of(m)) {
       watch_.commit(*std::move(plan));
     } else {
-      watch_.commit_unjudged(m.trajectory().request().id(), plan.error());
+      watch_.commit_unjudged(m.nominal().request().id(), plan.error());
     }
     const std::chrono::nanoseconds took = std::chrono::steady_clock::now() - begin;
     tell({.wire_ns = wire_time_ns(m.header(), info), .compute_ns = took.count()});
@@ -110,6 +123,11 @@ class FlightCheckComponent : public Component {
     if (!state) return;  // the tracker reports bad odometry
     const double t_s = seconds(conversions::to_ns(m.header().stamp()));
     watch_.fly({{t_s, state->position_map, state->q_map_base}, state->velocity_map.norm()});
+  }
+
+  /// A counter that goes back is that of a restarted plant, which hovers where it begins.
+  void on_status(const msg::VehicleStatus& m) {
+    if (std::exchange(resets_, m.resets()) != m.resets()) watch_.forget_track();
   }
 
   /// @param timing of the verdict on a plan
@@ -158,6 +176,7 @@ class FlightCheckComponent : public Component {
   StageReporter reporter_;
   std::optional<Octomap> new_map_;  // not read yet
   Watch watch_;
+  std::uint32_t resets_ = 0;  // of the vehicle's position
   bool knows_truth_ = false;  // a simulator with noisy sensors tells the truth beside them
 };
 

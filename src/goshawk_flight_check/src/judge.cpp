@@ -7,8 +7,8 @@ namespace goshawk::flight_check {
 
 namespace {
 
-Eigen::Quaterniond unit(const Eigen::Quaterniond& q) {
-  return q.normalized();
+Eigen::Quaterniond unit(const Quaternion& q) {
+  return Eigen::Quaterniond(q).normalized();
 }
 
 }  // namespace

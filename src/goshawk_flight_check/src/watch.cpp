@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <span>
 #include <utility>
 
 namespace goshawk::flight_check {
@@ -17,6 +18,32 @@ bool is_worse(const Verdict& a, const Verdict& b) {
   return !b.touched && (a.touched || a.clearance_m < b.clearance_m);
 }
 
+/// What is flown if nothing newer comes.
+double end_s(const Plan& plan) {
+  const auto& last = plan.stop.empty() ? plan.nominal : plan.stop;
+  return plan.start_s + (last.empty() ? 0.0 : last.back().t_s);
+}
+
+std::span<const Sample> from(const std::vector<Sample>& track, double t_s) {
+  const auto first = std::ranges::lower_bound(track, t_s, {}, &Sample::t_s);
+  return {first, track.end()};
+}
+
+/// The worse verdict on the two parts of a plan, from t_s on. @pre one of them is not over
+Result<Verdict> judge_parts(const FlightCheck& check, const Plan& plan, double t_s,
+                            double below_m) {
+  std::optional<Verdict> worst;
+  for (const auto* part : {&plan.nominal, &plan.stop}) {
+    const auto left = from(*part, t_s);
+    if (left.empty()) continue;
+    auto verdict = check.judge(left, below_m);
+    if (!verdict) return verdict;
+    if (!worst || is_worse(*verdict, *worst)) worst = *std::move(verdict);
+  }
+  if (worst) return *std::move(worst);
+  return fail(ErrorCode::invalid_input, "the plan has no sample to judge: plan again");
+}
+
 }  // namespace
 
 void Watch::set_map(FlightCheck check) {
@@ -27,8 +54,7 @@ void Watch::set_map(FlightCheck check) {
 void Watch::commit(Plan plan) {
   finish_leg();
   newest_id_ = plan.request_id;
-  const double duration_s = plan.track.empty() ? 0.0 : plan.track.back().t_s;
-  leg_ = Leg{.id = plan.request_id, .end_s = plan.start_s + duration_s, .flown = {}};
+  leg_ = Leg{.id = plan.request_id, .end_s = end_s(plan), .flown = {}};
   plan_ = std::move(plan);
   plan_is_judged_ = false;
   if (!check_) {
@@ -36,7 +62,7 @@ void Watch::commit(Plan plan) {
                          fail(ErrorCode::no_map, "no map came yet: the plan is not judged")});
     return;
   }
-  auto verdict = check_->judge(plan_->track);
+  auto verdict = judge_parts(*check_, *plan_, -kAnyClearance, kAnyClearance);
   plan_is_judged_ = verdict.ok();
   if (!verdict || verdict->touched) plan_.reset();
   findings_.push_back({Kind::planned, newest_id_, std::move(verdict)});
@@ -81,11 +107,10 @@ void Watch::tick(double now_s) {
 
 // What is left of the plan, against a newer map. Only news is told.
 void Watch::judge_plan_anew(double now_s) {
-  if (!plan_) return;
-  const auto left = std::ranges::find_if(
-      plan_->track, [&](const Sample& s) { return plan_->start_s + s.t_s >= now_s; });
-  if (left == plan_->track.end()) return;
-  auto verdict = check_->judge({left, plan_->track.end()}, plan_is_judged_ ? 0.0 : kAnyClearance);
+  const double t_s = plan_ ? now_s - plan_->start_s : 0.0;
+  const bool is_over = !plan_ || (from(plan_->nominal, t_s).empty() && from(plan_->stop, t_s).empty());
+  if (is_over) return;
+  auto verdict = judge_parts(*check_, *plan_, t_s, plan_is_judged_ ? 0.0 : kAnyClearance);
   const bool is_news = !plan_is_judged_ || !verdict || verdict->touched;
   plan_is_judged_ = verdict.ok();
   if (!verdict || verdict->touched) plan_.reset();

@@ -56,7 +56,7 @@ TEST(PlannedTrack, FollowsTheCurveAndItsTimes) {
 TEST(PlannedTrack, KeepsTheYawAndJoinsPieces) {
   const std::vector<PlannedPiece> pieces{line({0, 0, 1}, {1, 0, 1}, 0.5),
                                          line({1, 0, 1}, {1, 1, 1}, 0.7)};
-  const auto track = planned_track(pieces, 0.1, {.yaw_rad = 0.8}).value();
+  const auto track = planned_track(pieces, 0.1, [](double) { return 0.8; }).value();
   EXPECT_EQ(track.size(), 1U + 5U + 7U);
   EXPECT_NEAR(track.back().t_s, 1.2, 1e-12);
   for (const Sample& s : track) {
@@ -64,36 +64,29 @@ TEST(PlannedTrack, KeepsTheYawAndJoinsPieces) {
   }
 }
 
-// Cox and de Boor's recursion for a quadratic basis function on the knots i, i + 1, i + 2, i + 3.
-double basis(int i, int degree, double u) {
-  if (degree == 0) return u >= i && u < i + 1 ? 1.0 : 0.0;
-  return (u - i) / degree * basis(i, degree - 1, u) +
-         (i + degree + 1 - u) / degree * basis(i + 1, degree - 1, u);
-}
-
-TEST(PlannedYaw, IsTheSplineOfItsPoints) {
-  const PlannedYaw yaw{.yaw_rad = 9.0, .step_s = 0.4, .points_rad = {0.1, 0.5, -0.3, 2.0, 2.2}};
-  for (double t_s = 0.0; t_s < 1.2; t_s += 0.013) {
-    double expected = 0.0;
-    // The spline begins at its knot 2, where three functions are there.
-    for (int i = 0; i < 5; ++i) {
-      expected += yaw.points_rad[std::size_t(i)] * basis(i, 2, t_s / 0.4 + 2.0);
-    }
-    EXPECT_NEAR(yaw.at(t_s), expected, 1e-12) << t_s;
+TEST(PlannedTrack, TurnsAsItsYawIsPlanned) {
+  const std::vector<PlannedPiece> pieces{line({0, 0, 1}, {1, 0, 1}, 0.5),
+                                         line({1, 0, 1}, {1, 1, 1}, 0.7)};
+  const auto turning = [](double t_s) { return 2.0 * t_s - 0.5; };
+  const auto track = planned_track(pieces, 0.1, turning).value();
+  ASSERT_EQ(track.size(), 13U);
+  for (const Sample& s : track) {
+    const Vec3 heading = s.q_map_base * Vec3::UnitX();
+    EXPECT_NEAR(std::atan2(heading.y(), heading.x()), turning(s.t_s), 1e-9) << s.t_s;
   }
-  EXPECT_DOUBLE_EQ(yaw.at(-1.0), 0.3);  // between its first two points
-  EXPECT_DOUBLE_EQ(yaw.at(99.0), 2.1);
-  EXPECT_EQ(PlannedYaw{.yaw_rad = 0.7}.at(3.0), 0.7);
+  const auto lost = [](double t_s) { return t_s < 0.6 ? 0.0 : NAN; };
+  EXPECT_EQ(planned_track(pieces, 0.1, lost).code(), ErrorCode::invalid_input);
 }
 
-TEST(PlannedTrack, TurnsWithItsYawAndCountsFromItsStart) {
-  const PlannedYaw yaw{.yaw_rad = 0.0, .step_s = 1.0, .points_rad = {-0.5, 0.5, 1.5, 2.5}};
-  const std::vector<PlannedPiece> pieces{line({0, 0, 1}, {0.5, 0, 1}, 0.5)};
-  const auto track = planned_track(pieces, 0.1, yaw, 1.25).value();
+TEST(PlannedTrack, CountsFromItsStart) {
+  const auto turning = [](double t_s) { return t_s; };
+  const auto track =
+      planned_track(std::vector{line({0, 0, 1}, {1, 0, 1}, 0.5)}, 0.1, turning, 1.25).value();
   EXPECT_DOUBLE_EQ(track.front().t_s, 1.25);
-  for (const Sample& s : track) {  // these points make yaw equal to time
-    const Vec3 nose = s.q_map_base * Vec3::UnitX();
-    EXPECT_NEAR(std::atan2(nose.y(), nose.x()), s.t_s, 1e-9);
+  EXPECT_NEAR(track.back().t_s, 1.75, 1e-12);
+  for (const Sample& s : track) {
+    const Vec3 heading = s.q_map_base * Vec3::UnitX();
+    EXPECT_NEAR(std::atan2(heading.y(), heading.x()), s.t_s, 1e-9);
   }
 }
 
@@ -116,11 +109,6 @@ TEST(PlannedTrack, RefusesWhatIsNoTrajectory) {
   EXPECT_EQ(code({good}, 0.0), ErrorCode::invalid_input);
   EXPECT_EQ(code({good}, 1e-9), ErrorCode::invalid_input);
   EXPECT_EQ(code({good}), ErrorCode::ok);
-  for (const PlannedYaw& yaw :
-       {PlannedYaw{.yaw_rad = NAN}, PlannedYaw{0.0, 1.0, {1.0, 2.0}},
-        PlannedYaw{0.0, 0.0, {1.0, 2.0, 3.0}}, PlannedYaw{0.0, 1.0, {1.0, NAN, 3.0}}}) {
-    EXPECT_EQ(planned_track(std::vector{good}, 0.01, yaw).code(), ErrorCode::invalid_input);
-  }
   EXPECT_EQ(planned_track(std::vector{good}, 0.01, {}, NAN).code(), ErrorCode::invalid_input);
 }
 

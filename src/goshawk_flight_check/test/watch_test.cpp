@@ -28,7 +28,7 @@ std::vector<Sample> straight(double from_m, double to_m) {
 }
 
 Plan plan(std::uint64_t id, double start_s, double from_m, double to_m) {
-  return {id, start_s, straight(from_m, to_m)};
+  return {id, start_s, straight(from_m, to_m), {}};
 }
 
 class WatchTest : public ::testing::Test {
@@ -67,6 +67,40 @@ TEST_F(WatchTest, JudgesAPlanAtOnce) {
   ASSERT_EQ(findings.size(), 1U);
   EXPECT_TRUE(findings[0].outcome->touched);
   EXPECT_NEAR(findings[0].outcome->clearance_t_s, 1.85, 1e-3);
+}
+
+TEST_F(WatchTest, JudgesTheNominalAndTheStopPart) {
+  watch.set_map(wall_at(20));
+  const auto stopping = [](double stop_at_m) {
+    Plan p = plan(7, 100.0, 0.0, 1.5);
+    p.stop = straight(1.0, stop_at_m);
+    for (Sample& s : p.stop) s.t_s += 1.0;
+    return p;
+  };
+  watch.commit(stopping(1.2));
+  EXPECT_NEAR(found().front().outcome->clearance_m, 0.35, 1e-3);  // the nominal part is nearer
+  watch.commit(stopping(1.7));
+  EXPECT_NEAR(found().front().outcome->clearance_m, 0.15, 1e-3);
+  watch.commit(stopping(2.5));
+  const auto findings = found();
+  EXPECT_TRUE(findings.front().outcome->touched);
+  EXPECT_NEAR(findings.front().outcome->clearance_t_s, 1.85, 1e-3);
+}
+
+TEST_F(WatchTest, FollowsTheStopPartToItsEnd) {
+  watch.set_map(wall_at(20));
+  Plan p = plan(7, 100.0, 0.0, 0.5);
+  p.stop = straight(0.2, 1.5);
+  for (Sample& s : p.stop) s.t_s += 0.2;
+  watch.commit(p);
+  found();
+  fly(100.0, 0.0, 1.5);
+  EXPECT_TRUE(found().empty());
+  hover(101.51, 1.5, 1.2);
+  const auto findings = found();
+  ASSERT_EQ(findings.size(), 1U);
+  EXPECT_EQ(findings[0].kind, Kind::flown);
+  EXPECT_NEAR(findings[0].outcome->clearance_m, 0.35, 1.1e-3);
 }
 
 TEST_F(WatchTest, JudgesAPlanWhenAMapComes) {

@@ -86,9 +86,9 @@ Json to_json(const VoxelGrid* grid) {
 
 Json to_json(const Polytope& polytope) {
   Json normals = Json::array(), offsets = Json::array();
-  for (int i = 0; i < polytope.faces(); ++i) {
-    for (int axis = 0; axis < 3; ++axis) normals.push_back(polytope.A(i, axis));
-    offsets.push_back(polytope.b[i]);
+  for (const HalfSpace& face : polytope.half_spaces) {
+    for (int axis = 0; axis < 3; ++axis) normals.push_back(face.normal[axis]);
+    offsets.push_back(face.offset_m);
   }
   return {{"A", normals}, {"b", offsets}};
 }

@@ -1,3 +1,4 @@
+#include "goshawk/conversions/status.hpp"
 #include "goshawk/conversions/vehicle.hpp"
 #include "goshawk/navigator/navigator.hpp"
 #include "goshawk/runtime/component.hpp"
@@ -16,6 +17,16 @@ std::uint64_t first_id(std::int64_t now_ns) {
   return std::max<std::uint64_t>(1, std::uint64_t(now_ns / 1'000'000));
 }
 
+std::uint8_t to_msg(State state) {
+  namespace constants = goshawk_msgs::msg::NavigatorState_Constants;
+  static_assert(std::uint8_t(State::idle) == constants::STATE_IDLE &&
+                std::uint8_t(State::planning) == constants::STATE_PLANNING &&
+                std::uint8_t(State::flying) == constants::STATE_FLYING &&
+                std::uint8_t(State::arrived) == constants::STATE_ARRIVED &&
+                std::uint8_t(State::failed) == constants::STATE_FAILED);
+  return std::uint8_t(state);
+}
+
 constexpr double kAlive_s = 0.5;  // the newest state again: the tracker lands without it
 
 /// goal_pose, odom, trajectory, stage_report -> plan_request, committed_trajectory,
@@ -26,7 +37,7 @@ class NavigatorComponent : public Component {
       : node_(node),
         config_(node.parameters<Config>([this](const Config& c) { return reconfigure(c); })),
         navigator_(config_, first_id(node.now_ns())),
-        reporter_(node, "navigator"),
+        reporter_(node, StageRole::navigator, "navigator"),
         requests_(node.advertise<msg::PlanRequest>("plan_request", Qos::reliable_last())),
         commits_(node.advertise<msg::CommittedTrajectory>("committed_trajectory", Qos::latched())),
         states_(node.advertise<msg::NavigatorState>("navigator_state", Qos::latched(20))),
@@ -57,7 +68,7 @@ class NavigatorComponent : public Component {
         [this](const nav_msgs::msg::Odometry& m, const MessageInfo& info) {
           const auto state = conversions::from_msg(m);
           if (!state) return;  // the tracker reports bad odometry
-          navigator_.on_odometry(state->position_map, state->velocity_map, info.received_ns);
+          navigator_.on_odometry(*state, info.received_ns);
         });
     node_.subscribe<msg::BezierTrajectory>(
         "trajectory", Qos::reliable_last(),
@@ -73,32 +84,42 @@ class NavigatorComponent : public Component {
     Status status = conversions::check_frame(m.header(), conversions::kMapFrame, "a goal");
     if (status) {
       const auto& q = m.pose().orientation();
-      const Eigen::Quaterniond rotation(q.w(), q.x(), q.y(), q.z());
       status = navigator_.on_goal(conversions::from_msg(m.pose().position()),
-                                  conversions::yaw_of(rotation), node_.now_ns());
+                                  yaw_of(Quaternion(q.w(), q.x(), q.y(), q.z())), node_.now_ns());
     }
     if (!status) {
       reporter_.fault(status.error());
-      // Whoever waits for the answer to this goal reads navigator_state.
+      // The sender of this goal waits for its answer on navigator_state.
       if (navigator_.state() != State::flying && navigator_.state() != State::planning) {
-        publish(StateOrder{State::failed, 0, Vec3::Zero(), status.error()});
+        publish(StateOrder{.state = State::failed, .reason = status.error()});
       }
     }
     carry_out();
   }
 
   void on_trajectory(const msg::BezierTrajectory& m, const MessageInfo& info) {
-    auto received = conversions::from_msg(m);
-    if (!received) {
-      navigator_.on_report(m.request().id(), "trajectory_optimizer", received.error(),
+    auto candidate = candidate_of(m);
+    if (!candidate) {
+      navigator_.on_report(m.request().id(), StageRole::trajectory_optimizer, candidate.error(),
                            info.received_ns);
-      reporter_.failed(m.request().id(), received.error());
+      reporter_.failed(m.request().id(), candidate.error());
     } else {
       wire_ns_ = wire_time_ns(m.header(), info);
       candidate_ = m;
-      navigator_.on_trajectory(m.request().id(), std::move(received->trajectory), info.received_ns);
+      navigator_.on_trajectory(*std::move(candidate), info.received_ns);
     }
     carry_out();
+  }
+
+  static Result<Commitment> candidate_of(const msg::BezierTrajectory& m) {
+    auto nominal = conversions::from_msg(m);
+    if (!nominal) return nominal.error();
+    auto yaw_curve = conversions::yaw_curve_of(m);
+    if (!yaw_curve) return yaw_curve.error();
+    return Commitment{.id = m.request().id(),
+                      .nominal = *std::move(nominal),
+                      .map_version = m.map_version(),
+                      .yaw_curve = *std::move(yaw_curve)};
   }
 
   void on_report(const msg::StageReport& m) {
@@ -106,7 +127,8 @@ class NavigatorComponent : public Component {
     for (const ErrorCode code : all_error_codes()) {
       if (to_string(code) == m.code()) outcome.code = code;
     }
-    navigator_.on_report(m.request_id(), m.stage(), outcome, node_.now_ns());
+    navigator_.on_report(m.request_id(), conversions::stage_role_of(m.stage()), outcome,
+                         node_.now_ns());
     carry_out();
   }
 
@@ -116,34 +138,27 @@ class NavigatorComponent : public Component {
     }
   }
 
-  void publish(const PlanOrder& order) {
-    const conversions::PlanRequest request{.id = order.id,
-                                           .stamp_ns = order.stamp_ns,
-                                           .start = order.start,
-                                           .goal = order.goal,
-                                           .goal_yaw_rad = order.yaw_rad,
-                                           .limits = config_.limits(),
-                                           .deadline_s = order.deadline_s};
+  void publish(const PlanRequest& request) {
     auto m = conversions::to_msg(request);
     m.header().stamp(conversions::to_stamp(node_.now_ns()));
     reporter_.send(requests_, m);
   }
 
-  void publish(const CommitOrder& order) {
+  void publish(const CommittedTrajectory& committed) {
     msg::CommittedTrajectory m;
     m.header(conversions::make_header(node_.now_ns()));
-    m.start_time(conversions::to_stamp(order.start_time_ns));
-    m.yaw(order.yaw_rad);
-    m.trajectory(candidate_);
+    m.nominal(candidate_);
+    conversions::fill_msg(committed, m);
     reporter_.send(commits_, m);
-    reporter_.answered(order.id, {.wire_ns = wire_ns_, .compute_ns = 0});
+    reporter_.answered(committed.id(), {.wire_ns = wire_ns_, .compute_ns = 0});
   }
 
   void publish(const StateOrder& order) {
     auto& m = state_message_;
     m.header(conversions::make_header(node_.now_ns()));
-    m.state(std::string(to_string(order.state)));
+    m.state(to_msg(order.state));
     m.request_id(order.id);
+    m.flown_request_id(order.flown_id);
     m.goal(conversions::to_point(order.goal_map));
     m.code(std::string(to_string(order.reason.code)));
     m.message(order.reason.message);

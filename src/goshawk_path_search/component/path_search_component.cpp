@@ -1,3 +1,7 @@
+#include <fmt/format.h>
+
+#include <functional>
+
 #include "goshawk/path_search/config.hpp"
 #include "goshawk/path_search/path_search.hpp"
 #include "goshawk/runtime/component.hpp"
@@ -24,14 +28,13 @@ class PathSearchComponent : public Component {
       : node_(node),
         config_(node.parameters<Config>([this](const Config& c) { return reconfigure(c); })),
         search_(make_search(config_)),
-        reporter_(node, config_.planner),
+        reporter_(node, StageRole::path_search, std::string(search_.planner_name())),
         publisher_(node.advertise<msg::Path>("path", Qos::reliable_last())),
-        map_(node, reporter_, [this](const auto& grid) { search_.set_map(grid); }) {
-    node.subscribe<msg::PlanRequest>(
-        "plan_request", Qos::reliable_last(),
-        [this](const msg::PlanRequest& m, const MessageInfo& info) { on_request(m, info); });
-    reporter_.ready("searches with " + std::string(search_.planner_name()) + ", " +
-                    config_.corner_rule);
+        map_(node, reporter_, [this](const auto& grid) { search_.set_map(grid); }),
+        requests_(node, reporter_, "plan_request",
+                  std::bind_front(&PathSearchComponent::on_request, this)) {
+    reporter_.ready(
+        fmt::format("searches with {}, {}", search_.planner_name(), to_word(config_.corner_rule)));
   }
 
  private:
@@ -42,24 +45,16 @@ class PathSearchComponent : public Component {
     return success();
   }
 
-  void on_request(const msg::PlanRequest& m, const MessageInfo& info) {
-    Timing timing{.wire_ns = wire_time_ns(m.header(), info)};
-    const auto request = open_request(m, node_.now_ns(), reporter_, timing);
-    if (!request) return;
-    std::vector<Vec3> goals_map = {request->goal.position};
-    goals_map.insert(goals_map.end(), request->other_goals_map.begin(),
-                     request->other_goals_map.end());
-    const PlanQuery query{
-        .start_map = request->start.position, .goals_map = goals_map, .stop = stop_of(*request)};
-    auto [path, compute_ns] = timed([&] { return search_.plan(query); });
+  void on_request(const msg::PlanRequest& m, const PlanRequest& request, Timing timing) {
+    auto [path, compute_ns] = timed([&] { return search_.plan(request, stop_of(request)); });
     timing.compute_ns = compute_ns;
-    if (!path) return reporter_.failed(request->id, path.error(), timing);
+    if (!path) return reporter_.failed(request.id, path.error(), timing);
     publish(m, *path, compute_ns);
-    report(request->id, *path, timing);
+    report(request.id, *path, timing);
   }
 
   /// What is left of the request's deadline.
-  StopSignal stop_of(const conversions::PlanRequest& request) const {
+  StopSignal stop_of(const PlanRequest& request) const {
     if (request.deadline_s == 0.0) return {};
     return StopSignal::after(request.deadline_s - double(node_.now_ns() - request.stamp_ns) * 1e-9);
   }
@@ -107,6 +102,7 @@ class PathSearchComponent : public Component {
   StageReporter reporter_;
   Publisher<msg::Path> publisher_;
   MapSubscription map_;
+  Intake<msg::PlanRequest> requests_;
 };
 
 }  // namespace

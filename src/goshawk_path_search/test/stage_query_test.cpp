@@ -113,7 +113,7 @@ TEST(CutOffGoals, AreApproachedOnRequest) {
   EXPECT_EQ(stage({}, grid).plan(start, goal).code(), ErrorCode::no_path);
   Config config;
   config.nearest_reachable = true;
-  for (const auto* planner : {"jastar", "dijkstra", "rrtstar"}) {
+  for (const Planner planner : {Planner::jastar, Planner::dijkstra, Planner::rrtstar}) {
     config.planner = planner;
     config.max_iterations = 300;
     const auto path = stage(config, grid).plan(start, goal);
@@ -156,28 +156,93 @@ TEST(SearchBox, KeepsThePathInside) {
   EXPECT_EQ(stage(config, grid).plan(start, goal).code(), ErrorCode::map_empty);
 }
 
-TEST(UnknownSpace, IsFreeBlockedOrCostly) {
-  // A corridor of 12 x 3 x 1; the middle of the straight way is not measured.
+// A corridor of 12 x 3 x 1 that leaves unknown space free; the middle of the straight way is
+// not measured.
+std::shared_ptr<VoxelGrid> half_known_corridor() {
   auto grid = grid_of(BitGrid({12, 3, 1}, true));
   grid->known = BitGrid({12, 3, 1}, false, true);
   for (int x = 3; x < 9; ++x) grid->known.set({x, 1, 0}, false);
   grid->unknown_is_occupied = false;
+  return grid;
+}
+
+TEST(UnknownSpace, IsFreeBlockedOrCostly) {
+  const auto grid = half_known_corridor();
   const Vec3 start = grid->geometry.center({0, 1, 0}), goal = grid->geometry.center({11, 1, 0});
-  const auto cost = [&](const std::string& unknown) {
+  const auto cost = [&](UnknownRule unknown) {
     Config config;
     config.unknown = unknown;
     config.unknown_weight = 0.1;
     const auto path = stage(config, grid).plan(start, goal);
     return path.ok() ? path->cost / 0.2 : -1.0;
   };
-  EXPECT_NEAR(cost("as_mapped"), 11.0, 1e-12);
-  EXPECT_NEAR(cost("free"), 11.0, 1e-12);
-  EXPECT_NEAR(cost("costly"), 11.0 + 0.6, 1e-12) << "cheaper through it than round it";
-  EXPECT_NEAR(cost("blocked"), 9.0 + 2.0 * std::sqrt(2.0), 1e-12);
+  EXPECT_NEAR(cost(UnknownRule::as_mapped), 11.0, 1e-12);
+  EXPECT_NEAR(cost(UnknownRule::free), 11.0, 1e-12);
+  EXPECT_NEAR(cost(UnknownRule::costly), 11.0 + 0.6, 1e-12) << "cheaper through it than round it";
+  EXPECT_NEAR(cost(UnknownRule::blocked), 9.0 + 2.0 * std::sqrt(2.0), 1e-12);
   grid->unknown_is_occupied = true;
   Config config;
-  config.unknown = "costly";
+  config.unknown = UnknownRule::costly;
   EXPECT_EQ(stage(config, grid).plan(start, goal).code(), ErrorCode::invalid_parameter);
+}
+
+TEST(UnknownSpace, IsTakenAsTheRequestSaysElseAsConfigured) {
+  const auto grid = half_known_corridor();
+  PlanRequest request;
+  request.start.position = grid->geometry.center({0, 1, 0});
+  request.goal.position = grid->geometry.center({11, 1, 0});
+  const double straight = 11.0, around = 9.0 + 2.0 * std::sqrt(2.0);
+  for (const UnknownRule configured : {UnknownRule::as_mapped, UnknownRule::blocked}) {
+    Config config;
+    config.unknown = configured;
+    config.unknown_weight = 0.1;
+    auto search = stage(config, grid);
+    const auto cost = [&](UnknownSpace unknown) {
+      request.unknown = unknown;
+      const auto path = search.plan(request);
+      return path.ok() ? path->cost / 0.2 : -1.0;
+    };
+    const bool blocks = configured == UnknownRule::blocked;
+    EXPECT_NEAR(cost(UnknownSpace::as_configured), blocks ? around : straight, 1e-12);
+    EXPECT_NEAR(cost(UnknownSpace::free), straight, 1e-12);
+    EXPECT_NEAR(cost(UnknownSpace::costly), straight + 0.6, 1e-12);
+    EXPECT_NEAR(cost(UnknownSpace::blocked), around, 1e-12);
+    EXPECT_NEAR(cost(UnknownSpace::as_configured), blocks ? around : straight, 1e-12)
+        << "a request does not change how the next one is taken";
+  }
+}
+
+TEST(UnknownSpace, OfARequestFollowsTheMap) {
+  const auto before = half_known_corridor();
+  auto search = stage({}, before);
+  PlanRequest request;
+  request.start.position = before->geometry.center({0, 1, 0});
+  request.goal.position = before->geometry.center({11, 1, 0});
+  request.unknown = UnknownSpace::blocked;
+  EXPECT_NEAR(search.plan(request)->cost / 0.2, 9.0 + 2.0 * std::sqrt(2.0), 1e-12);
+  auto measured = half_known_corridor();
+  measured->known = BitGrid({12, 3, 1}, false, true);
+  search.set_map(measured);
+  EXPECT_NEAR(search.plan(request)->cost / 0.2, 11.0, 1e-12);
+  auto closed = half_known_corridor();
+  closed->unknown_is_occupied = true;
+  search.set_map(closed);
+  request.unknown = UnknownSpace::free;
+  EXPECT_EQ(search.plan(request).code(), ErrorCode::invalid_parameter);
+}
+
+TEST(Request, IsSearchedToWhicheverGoalIsNearest) {
+  const auto grid = half_known_corridor();
+  auto search = stage({}, grid);
+  const auto at = [&](int x) { return grid->geometry.center({x, 1, 0}); };
+  PlanRequest request;
+  request.start.position = at(0);
+  request.goal.position = at(11);
+  request.other_goals_map = {at(6), at(3)};
+  const auto path = search.plan(request);
+  ASSERT_TRUE(path.ok()) << path.error().message;
+  EXPECT_EQ(path->goal, 2u);
+  EXPECT_EQ(path->waypoints_map.back(), request.other_goals_map[1]);
 }
 
 TEST(Weights, BendThePathAsTheyShould) {
@@ -186,7 +251,7 @@ TEST(Weights, BendThePathAsTheyShould) {
   for (int z = 0; z < 9; ++z) blocked.set({10, 10, z}, true);
   const auto grid = grid_of(blocked);
   Config config;
-  config.pruning = "none";
+  config.pruning = Pruning::none;
   config.clearance_m = 0.6;
   config.clearance_weight = 5.0;
   const auto path =
@@ -229,10 +294,10 @@ TEST(Config, RefusesEveryWrongNumberAtOnce) {
 TEST(SamplingPlanners, FindFreePathsThatRepeatBitForBit) {
   Random random(32);
   const auto grid = grid_of(reference::box_map({40, 40, 12}, 0.15, random));
-  for (const std::string planner : {"rrt", "rrtstar", "prm"}) {
+  for (const Planner planner : {Planner::rrt, Planner::rrtstar, Planner::prm}) {
     Config config;
     config.planner = planner;
-    config.pruning = "none";
+    config.pruning = Pruning::none;
     config.max_iterations = 1500;
     PathSearch search = stage(config, grid), again = stage(config, grid);
     int found = 0;
@@ -244,15 +309,17 @@ TEST(SamplingPlanners, FindFreePathsThatRepeatBitForBit) {
       ASSERT_EQ(path.code(), repeated.code());
       if (!path.ok()) continue;
       ++found;
-      EXPECT_EQ(path->raw_map, repeated->raw_map) << planner;
-      EXPECT_EQ(path->raw_map, search.plan(start, goal)->raw_map) << planner << ", same object";
+      EXPECT_EQ(path->raw_map, repeated->raw_map) << to_word(planner);
+      EXPECT_EQ(path->raw_map, search.plan(start, goal)->raw_map)
+          << to_word(planner) << ", same object";
       EXPECT_EQ(path->raw_map.front(), start);
       EXPECT_EQ(path->raw_map.back(), goal);
       for (std::size_t i = 1; i < path->raw_map.size(); ++i) {
-        ASSERT_TRUE(line_is_free(*grid, path->raw_map[i - 1], path->raw_map[i])) << planner;
+        ASSERT_TRUE(line_is_free(*grid, path->raw_map[i - 1], path->raw_map[i]))
+            << to_word(planner);
       }
     }
-    EXPECT_GT(found, 3) << planner;
+    EXPECT_GT(found, 3) << to_word(planner);
   }
 }
 
@@ -297,11 +364,11 @@ TEST(FclValidity, AgreesWithTheGridButForAHair) {
 TEST(FclValidity, GivesSamplingPlannersPathsThatAreFreeOnTheGrid) {
   Random random(34);
   const auto grid = grid_of(reference::box_map({30, 30, 10}, 0.15, random));
-  for (const std::string planner : {"rrt", "rrtstar", "prm"}) {
+  for (const Planner planner : {Planner::rrt, Planner::rrtstar, Planner::prm}) {
     Config config;
     config.planner = planner;
-    config.validity = "fcl";
-    config.pruning = "none";
+    config.validity = Validity::fcl;
+    config.pruning = Pruning::none;
     config.max_iterations = 400;
     PathSearch search = stage(config, grid), again = stage(config, grid);
     int found = 0;
@@ -311,16 +378,14 @@ TEST(FclValidity, GivesSamplingPlannersPathsThatAreFreeOnTheGrid) {
       const auto path = search.plan(start, goal);
       if (!path.ok()) continue;
       ++found;
-      EXPECT_EQ(path->raw_map, again.plan(start, goal)->raw_map) << planner;
+      EXPECT_EQ(path->raw_map, again.plan(start, goal)->raw_map) << to_word(planner);
       for (std::size_t i = 1; i < path->raw_map.size(); ++i) {
-        ASSERT_TRUE(line_is_free(*grid, path->raw_map[i - 1], path->raw_map[i])) << planner;
+        ASSERT_TRUE(line_is_free(*grid, path->raw_map[i - 1], path->raw_map[i]))
+            << to_word(planner);
       }
     }
-    EXPECT_GT(found, 1) << planner;
+    EXPECT_GT(found, 1) << to_word(planner);
   }
-  Config config;
-  config.validity = "guess";
-  EXPECT_EQ(PathSearch::create(config).code(), ErrorCode::invalid_parameter);
 }
 
 }  // namespace

@@ -5,7 +5,9 @@
 #include <unistd.h>
 
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
+#include <fmt/format.h>
 #include <algorithm>
 #include <charconv>
 #include <cstdlib>
@@ -55,10 +57,9 @@ Status check_interfaces(const std::string& interfaces) {
   std::string known;
   for (const auto& address : here) known += (known.empty() ? "" : ", ") + address;
   return fail(ErrorCode::invalid_parameter,
-              "interfaces '" + interfaces +
-                  "' are not 'loopback', 'all' or IPv4 addresses of this "
-                  "machine, which has " +
-                  known);
+              fmt::format("interfaces '{}' are not 'loopback', 'all' or IPv4 addresses of this "
+                          "machine, which has {}",
+                          interfaces, known));
 }
 
 void use_udp(dds::DomainParticipantQos& qos, const std::string& interfaces) {
@@ -80,11 +81,34 @@ void use_udp(dds::DomainParticipantQos& qos, const std::string& interfaces) {
   qos.wire_protocol().builtin.metatrafficUnicastLocatorList.push_back(peer);
 }
 
-dds::DomainParticipantQos participant_qos(const ContextOptions& options) {
+// Fast DDS makes its built-in transports itself, where no filter can be put in: the same two.
+void name_builtin_transports(dds::TransportConfigQos& transports) {
+  const auto most =
+      std::max(transports.send_socket_buffer_size, transports.listen_socket_buffer_size);
+  auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
+  udp->sendBufferSize = transports.send_socket_buffer_size;
+  udp->receiveBufferSize = transports.listen_socket_buffer_size;
+  auto memory = std::make_shared<eprosima::fastdds::rtps::SharedMemTransportDescriptor>();
+  memory->segment_size(2 * most);
+  memory->max_message_size(udp->max_message_size());
+  transports.user_transports.insert(transports.user_transports.begin(), {udp, memory});
+  transports.use_builtin_transports = false;
+}
+
+void filter_transports(dds::TransportConfigQos& transports, const wire::FilterOptions& options) {
+  if (transports.use_builtin_transports) name_builtin_transports(transports);
+  for (auto& transport : transports.user_transports) {
+    transport = wire::filtered(transport, options);
+  }
+}
+
+dds::DomainParticipantQos participant_qos(const ContextOptions& options,
+                                          const std::shared_ptr<wire::Refusals>& refusals) {
   auto* factory = dds::DomainParticipantFactory::get_instance();
   factory->load_profiles();
   dds::DomainParticipantQos qos = factory->get_default_participant_qos();
   if (std::getenv("FASTRTPS_DEFAULT_PROFILES_FILE") == nullptr) use_udp(qos, options.interfaces);
+  filter_transports(qos.transport(), {refusals, options.tap});
   // A killed process is forgotten after 3 s instead of 20, a restarted one met at once.
   auto& discovery = qos.wire_protocol().builtin.discovery_config;
   discovery.leaseDuration = {3, 0};
@@ -102,7 +126,14 @@ dds::DomainParticipantQos participant_qos(const ContextOptions& options) {
 
 Result<ContextOptions> ContextOptions::from_environment() {
   ContextOptions options;
-  if (const char* interfaces = std::getenv("GOSHAWK_INTERFACES")) options.interfaces = interfaces;
+  if (const char* interfaces = std::getenv("GOSHAWK_INTERFACES")) {
+    if (*interfaces == '\0') {
+      return fail(ErrorCode::invalid_parameter,
+                  "GOSHAWK_INTERFACES is set but empty: unset it for loopback, or set it to all or "
+                  "to IPv4 addresses of this machine");
+    }
+    options.interfaces = interfaces;
+  }
   if (const char* text = std::getenv("ROS_DOMAIN_ID"); text != nullptr && *text != '\0') {
     const std::string_view view(text);
     const auto [end, error] =
@@ -118,22 +149,22 @@ Result<ContextOptions> ContextOptions::from_environment() {
 
 Result<std::unique_ptr<Context>> Context::create(const ContextOptions& options) {
   if (options.domain < 0 || options.domain > kLastDomain) {
-    return fail(ErrorCode::invalid_parameter, "domain " + std::to_string(options.domain) +
-                                                  " does not exist: it must be from 0 to 232");
+    return fail(ErrorCode::invalid_parameter,
+                fmt::format("there is no domain {}: it must be from 0 to 232", options.domain));
   }
   if (auto status = check_interfaces(options.interfaces); !status) return status.error();
   auto impl = std::make_unique<Impl>();
   impl->domain = options.domain;
   auto* factory = dds::DomainParticipantFactory::get_instance();
-  impl->participant =
-      factory->create_participant(dds::DomainId_t(options.domain), participant_qos(options),
-                                  &impl->listener, dds::StatusMask::none());
+  impl->participant = factory->create_participant(dds::DomainId_t(options.domain),
+                                                  participant_qos(options, impl->refusals),
+                                                  &impl->listener, dds::StatusMask::none());
   if (impl->participant == nullptr) {
-    return fail(ErrorCode::io_failed,
-                "cannot join domain " + std::to_string(options.domain) + " on interfaces '" +
-                    options.interfaces +
-                    "': are its UDP ports (7400 + 250 x domain and up) taken, "
-                    "is the interface up, is the profile file right?");
+    return fail(
+        ErrorCode::io_failed,
+        fmt::format("cannot join domain {} on interfaces '{}': are its UDP ports (7400 + 250 "
+                    "x domain and up) taken, is the interface up, is the profile file right?",
+                    options.domain, options.interfaces));
   }
   impl->publisher = impl->participant->create_publisher(dds::PUBLISHER_QOS_DEFAULT);
   impl->subscriber = impl->participant->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT);
@@ -150,6 +181,12 @@ std::vector<ParticipantInfo> Context::participants() const {
 }
 std::vector<EndpointInfo> Context::endpoints() const {
   return impl_->listener.endpoints();
+}
+std::uint64_t Context::refused_datagrams() const {
+  return impl_->refusals->count();
+}
+std::string Context::last_refusal() const {
+  return impl_->refusals->last();
 }
 
 Context::Impl::~Impl() {

@@ -9,13 +9,14 @@
 #include <mutex>
 
 #include "goshawk/runtime/context.hpp"
+#include "wire/receive_filter.hpp"
 
 namespace goshawk::runtime {
 
 namespace dds = eprosima::fastdds::dds;
 namespace rtps = eprosima::fastrtps::rtps;
 
-/// Keeps a picture of who is in the domain.
+/// Keeps a list of the domain's participants and endpoints.
 class DiscoveryListener : public dds::DomainParticipantListener {
  public:
   void on_participant_discovery(dds::DomainParticipant* participant,
@@ -36,13 +37,14 @@ class DiscoveryListener : public dds::DomainParticipantListener {
 
 struct Context::Impl {
   int domain = 0;
+  std::shared_ptr<wire::Refusals> refusals = std::make_shared<wire::Refusals>();
   DiscoveryListener listener;
   dds::DomainParticipant* participant = nullptr;
   dds::Publisher* publisher = nullptr;
   dds::Subscriber* subscriber = nullptr;
 
   ~Impl();
-  /// The topic object of that name, made at first use. @return nullptr where it exists with
+  /// The topic object of that name, made at first use. @return nullptr if it exists with
   /// another type
   dds::Topic* topic(const std::string& ros_name, const dds::TypeSupport& type);
 

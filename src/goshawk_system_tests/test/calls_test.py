@@ -7,6 +7,12 @@ import harness
 import second_opinion
 from calls_case import DONE, NOT_DONE, WRONG_CALL, CallsCase, ascii_pcd
 
+ALL_VERBS = ["plan", "fly", "check", "world", "campaign", "launch", "view", "run", "bench plan",
+             "bench search", "bench scenario", "bench stage", "bench dds", "bench corridor",
+             "bench trajectory", "bench tracking", "conform", "record", "replay", "topic list",
+             "topic info", "topic echo", "topic hz", "topic delay", "topic bw", "topic pub",
+             "node list", "param list", "param get", "param set", "param describe", "param dump",
+             "doctor"]
 PLAN_KEYS = {"ok", "code", "message", "request", "stages", "path", "corridor", "trajectory",
              "certificate"}
 
@@ -30,8 +36,8 @@ class GoodPlan(CallsCase):
                          {"duration_s", "length_m", "mean_speed_m_s", "max_speed_m_s",
                           "max_acceleration_m_s2", "pieces"})
         self.assertEqual(set(plan["certificate"]),
-                         {"position_m", "velocity_m_s", "acceleration_m_s2", "joint_position_m",
-                          "joint_velocity_m_s", "joint_acceleration_m_s2", "start_m", "goal_m",
+                         {"position_m", "validity_s", "velocity_m_s", "acceleration_m_s2", "continuity_position_m",
+                          "continuity_velocity_m_s", "continuity_acceleration_m_s2", "start_m", "goal_m",
                           "jerk_m_s3", "start_excess_m_s", "start_excess_m_s2",
                           "start_excess_s"})
         for family, value in plan["certificate"].items():
@@ -111,9 +117,11 @@ class BadPoints(CallsCase):
                      self.sandbox.folder / "out"], WRONG_CALL, "invalid_parameter", "--goal")
 
     def test_fly_refuses_a_start_in_a_wall_before_anything_starts(self):
-        answer = self.expect(["fly", f"--start={self.occupied_point()}", "--output",
-                              self.sandbox.folder / "out"], NOT_DONE, "start_occupied")
+        out = self.sandbox.folder / "out"
+        answer = self.expect(["fly", f"--start={self.occupied_point()}", "--output", out], NOT_DONE,
+                             "start_occupied")
         self.assertNotIn("legs", answer)
+        self.assertFalse(out.exists())
 
 
 class BadNumbers(CallsCase):
@@ -127,6 +135,26 @@ class BadNumbers(CallsCase):
                 self.expect(["plan", f"{option}={value}"], WRONG_CALL, "invalid_parameter", option,
                             value)
                 self.expect(["fly", f"{option}={value}", *fly], WRONG_CALL, "invalid_parameter")
+
+    def test_limits_of_jerk_and_of_the_vertical(self):
+        options = {"--j-max": ("j_max_m_s3", 8.0), "--v-max-vertical": ("v_max_vertical_m_s", 0.5),
+                   "--a-max-vertical": ("a_max_vertical_m_s2", 0.75)}
+        for option in options:
+            self.expect(["plan", f"{option}=-1"], NOT_DONE, "invalid_limits")
+            self.expect(["plan", f"{option}=x"], WRONG_CALL, "invalid_parameter", option)
+        self.expect(["plan", "--norm=manhattan"], WRONG_CALL, "invalid_parameter", "per_axis")
+        call = ["plan", "--json", "--norm", "horizontal_vertical"]
+        for option, (_, value) in options.items():
+            call += [option, str(value)]
+        plan = self.json_object(self.sandbox.goshawk(*call))
+        self.assertTrue(plan["ok"], plan["message"])
+        for key, value in options.values():
+            self.assertEqual(plan["request"]["limits"][key], value)
+        climb = max(abs(b[2] - a[2]) * 5 / piece["duration_s"]
+                    for piece in plan["trajectory"]["pieces"]
+                    for a, b in zip(piece["control_points"], piece["control_points"][1:]))
+        self.assertLessEqual(climb, 0.5 + 1e-6)
+        self.assertGreater(climb, 0.25)
 
     def test_limits_at_the_edge_of_numbers(self):
         """Whatever comes of it: an answer, in time."""
@@ -219,13 +247,44 @@ class BadCalls(CallsCase):
         self.wrong(["world"], "output")
 
     def test_wrong_options_answer_in_json_where_that_is_asked_for(self):
-        for verb in ("plan", "fly", "world"):
-            self.expect([verb, "--gaol", "1,2,3"], WRONG_CALL, "invalid_input", "gaol")
+        for verb in ALL_VERBS:
+            self.expect([*verb.split(), "--gaol", "1,2,3"], WRONG_CALL, "invalid_input", "gaol")
+
+    def test_failures_of_every_verb_have_one_shape(self):
+        for arguments, status, code in [
+                (["check", "/no/such/flight"], WRONG_CALL, "invalid_parameter"),
+                (["world", "out.bt", "--kind", "forrest"], WRONG_CALL, "invalid_parameter"),
+                (["campaign", "--missions", "0"], WRONG_CALL, "invalid_parameter"),
+                (["campaign", "--kinds", "forrest"], WRONG_CALL, "invalid_parameter"),
+                (["campaign", "--output", "/proc/campaign"], NOT_DONE, "io_failed"),
+                (["launch", "flihgt"], WRONG_CALL, "invalid_parameter"),
+                (["launch"], WRONG_CALL, "invalid_input"),
+                (["view", "/no/such/flight"], WRONG_CALL, "io_failed"),
+                (["run", "traker"], WRONG_CALL, "invalid_parameter"),
+                (["bench", "stage", "tracker", "--input", "/no.mcap"], NOT_DONE, "io_failed"),
+                (["bench", "stage", "traker", "--input", "/no.mcap"], WRONG_CALL,
+                 "invalid_parameter"),
+                (["conform", "traker"], WRONG_CALL, "invalid_parameter"),
+                (["record", "a b"], WRONG_CALL, "invalid_parameter"),
+                (["replay", "/no.mcap"], NOT_DONE, "io_failed"),
+                (["topic", "echo", "/a b"], WRONG_CALL, "invalid_parameter"),
+                (["node", "list", "--timeout", "0.2"], NOT_DONE, "stage_silent"),
+                (["param", "describe", "traker"], WRONG_CALL, "invalid_parameter"),
+                (["fly", "--launch", "flihgt", "--output", self.sandbox.folder / "out"],
+                 WRONG_CALL, "invalid_parameter"),
+                (["fly", "-p", "tracker:mas_kg:=1", "--output", self.sandbox.folder / "out"],
+                 WRONG_CALL, "invalid_parameter")]:
+            self.expect(arguments, status, code)
+        self.assertFalse((self.sandbox.folder / "out").exists(), "a refused fly leaves no folder")
 
     def test_help(self):
         for verb in ("topic", "node", "param", "bench"):
             with self.subTest(verb=verb):
                 self.assertIn(verb, self.help_of(verb))
+        for verb in ("fly", "topic echo", "topic"):
+            helped = self.sandbox.goshawk("help", *verb.split(), timeout_s=20)
+            self.assertEqual((helped.status, helped.out), (DONE, self.help_of(verb)))
+        self.wrong(["help", "flu"], "flu", "fly")
         self.assertEqual(self.sandbox.goshawk("--help").status, DONE)
         self.assertIn("goshawk ", self.sandbox.goshawk("--version").out)
 
@@ -235,9 +294,9 @@ class BadCalls(CallsCase):
         return outcome.out
 
     def test_help_shows_examples_of_its_own_options(self):
-        for verb in ("plan", "fly", "check", "world", "campaign", "launch", "view", "run",
-                     "bench plan", "conform", "record", "replay", "topic echo", "topic hz",
-                     "topic pub", "param get", "param set", "param list", "param describe"):
+        for verb in ALL_VERBS:
+            if verb in ("topic list", "node list", "doctor"):
+                continue  # nothing to show
             with self.subTest(verb=verb):
                 text = self.help_of(verb)
                 head, _, examples = text.partition("xample")
@@ -247,6 +306,21 @@ class BadCalls(CallsCase):
                     # What stands behind --ros-args is ROS 2's.
                     if option not in ("--ros-args", "-p", "-r", "--params-file", "--log-level"):
                         self.assertIn(option, head)
+
+    def complete(self, *words):
+        return self.sandbox.goshawk("complete", *words, timeout_s=20).out.split()
+
+    def test_what_may_follow(self):
+        self.assertLessEqual({verb.split()[0] for verb in ALL_VERBS}, set(self.complete("")))
+        self.assertNotIn("place", self.complete(""))
+        self.assertLessEqual({"flight", "flight_container"}, set(self.complete("launch", "")))
+        self.assertIn("tracker", self.complete("run", ""))
+        self.assertIn("--goal", self.complete("fly", "--map", "x.bt", "-"))
+        self.assertEqual(set(self.complete("world", "--kind", "")),
+                         {"boxes", "forest", "office", "noise"})
+        self.assertIn("v_max_m_s", self.complete("param", "set", "/navigator", ""))
+        self.assertNotIn("mass_kg", self.complete("param", "set", "/tracker", ""))
+        self.assertIn("astar", self.complete("param", "set", "/path_search", "planner", ""))
 
     def test_numbers_of_fly(self):
         fly = ["--output", self.sandbox.folder / "out"]

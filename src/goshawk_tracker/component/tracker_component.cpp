@@ -23,6 +23,16 @@ Tracker make_tracker(const Config& config) {
   return *std::move(tracker);
 }
 
+std::uint8_t to_msg(Mode mode) {
+  namespace constants = goshawk_msgs::msg::TrackingState_Constants;
+  static_assert(std::uint8_t(Mode::idle) == constants::MODE_IDLE &&
+                std::uint8_t(Mode::hold) == constants::MODE_HOLD &&
+                std::uint8_t(Mode::follow) == constants::MODE_FOLLOW &&
+                std::uint8_t(Mode::brake) == constants::MODE_BRAKE &&
+                std::uint8_t(Mode::land) == constants::MODE_LAND);
+  return std::uint8_t(mode);
+}
+
 /// What a flight's control steps cost, and how evenly they came.
 class StepStatistics {
  public:
@@ -72,8 +82,8 @@ class TrackerComponent : public Component {
         config_(
             node.parameters<Config>([this](const Config& c) { return tracker_.reconfigure(c); })),
         tracker_(make_tracker(config_)),
-        reporter_(node, config_.controller),
-        commands_(node.advertise<msg::ThrustAttitude>("command", Qos::best_effort())),
+        reporter_(node, StageRole::tracker, config_.controller),
+        commands_(node.advertise<msg::AttitudeSetpoint>("command", Qos::best_effort())),
         states_(node.advertise<msg::TrackingState>("tracking_state", Qos::best_effort())) {
     node.subscribe<msg::CommittedTrajectory>(
         "committed_trajectory", Qos::latched(),
@@ -102,19 +112,22 @@ class TrackerComponent : public Component {
   }
 
   void accept(const msg::CommittedTrajectory& m, Timing timing) {
-    const std::uint64_t id = m.trajectory().request().id();
-    auto received = conversions::from_msg(m.trajectory());
+    const std::uint64_t id = m.nominal().request().id();
+    const auto received = conversions::from_msg(m);
     if (!received) return reporter_.failed(id, received.error(), timing);
+    const auto& last = received->stop() ? received->stop()->trajectory : received->nominal();
     CommittedTrajectory committed{.id = id,
-                                  .trajectory = std::move(received->trajectory),
-                                  .polytopes = std::move(received->polytopes),
-                                  .limits = received->request.limits,
-                                  .start = received->request.start,
-                                  .goal = received->request.goal,
-                                  .start_time_ns = conversions::to_ns(m.start_time()),
-                                  .yaw_rad = m.yaw(),
-                                  .yaw_step_s = m.trajectory().yaw_step(),
-                                  .yaw_points_rad = m.trajectory().yaw_points()};
+                                  .trajectory = received->flown(),
+                                  .polytopes = received->flown_polytopes(),
+                                  .limits = received->nominal().limits(),
+                                  .start = received->nominal().start(),
+                                  .goal = last.goal(),
+                                  .start_time_ns = received->start_time_ns(),
+                                  .yaw_rad = received->yaw_rad()};
+    if (const auto& curve = received->yaw_curve()) {
+      committed.yaw_step_s = curve->step_s;
+      committed.yaw_points_rad = curve->points_rad;
+    }
     const auto [status, compute_ns] =
         timed([&] { return tracker_.accept(std::move(committed), node_.now_ns()); });
     timing.compute_ns = compute_ns;
@@ -189,7 +202,7 @@ class TrackerComponent : public Component {
     report_fault(status);
     msg::TrackingState m;
     m.header(conversions::make_header(stamp_ns));
-    m.mode(std::string(to_string(status.mode)));
+    m.mode(to_msg(status.mode));
     m.request_id(status.trajectory_id);
     m.time_in_trajectory(status.progress_s);
     m.reference(conversions::to_point(status.reference.position));
@@ -201,9 +214,9 @@ class TrackerComponent : public Component {
   Config config_;
   Tracker tracker_;
   StageReporter reporter_;
-  Publisher<msg::ThrustAttitude> commands_;
+  Publisher<msg::AttitudeSetpoint> commands_;
   Publisher<msg::TrackingState> states_;
-  msg::ThrustAttitude command_message_;
+  msg::AttitudeSetpoint command_message_;
   std::optional<MapSubscription> map_;
   std::optional<msg::CommittedTrajectory> waiting_;
   StepStatistics steps_;

@@ -48,7 +48,7 @@ class ClosedLoop {
  private:
   struct Arrival {
     std::int64_t time_ns;
-    ThrustAttitude command;
+    AttitudeSetpoint command;
   };
   void exchange();
 

@@ -85,7 +85,7 @@ const stamp = sec => ({sec, nsec: 0});
 const point = ([x, y, z]) => ({x, y, z});
 
 test('the studio draws a plan as a corridor and a trajectory by speed', () => {
-  const plan = {header: {stamp: stamp(1)}, trajectory: {
+  const plan = {header: {stamp: stamp(1)}, stop_after: 0, stop_pieces: [], stop_polytopes: [], nominal: {
     request: {limits: {v_max: 2}}, polytopes: [kBox],
     pieces: [{duration: 1, control_points: [0, 1, 2, 3, 4, 5].map(k => point([0.4 * k, 3, 0]))}]}};
   const {entities} = studio()['goshawk_msgs/msg/CommittedTrajectory'](plan);

@@ -45,7 +45,7 @@ class VisualizerComponent : public Component {
           config_ = c;
           return success();
         })),
-        reporter_(node, "markers"),
+        reporter_(node, StageRole::viewer, "markers"),
         obstacles_(node.advertise<MarkerArray>("view/obstacles", Qos::latched())),
         plan_(node.advertise<MarkerArray>("view/plan", Qos::latched())),
         flown_(node.advertise<MarkerArray>("view/flown", Qos::latched())),
@@ -89,16 +89,17 @@ class VisualizerComponent : public Component {
   }
 
   void draw_plan(const msg::CommittedTrajectory& m) {
-    const auto received = conversions::from_msg(m.trajectory());
-    if (!received) return reporter_.fault(received.error());
-    const auto& [request, trajectory, polytopes, certificate] = *received;
-    const std::int64_t start_ns = conversions::to_ns(m.start_time());
+    const auto committed = conversions::from_msg(m);
+    if (!committed) return reporter_.fault(committed.error());
+    const Trajectory& trajectory = committed->flown();
+    const auto polytopes = committed->flown_polytopes();
+    const std::int64_t start_ns = committed->start_time_ns();
     reporter_.send(path_line_, path_line(trajectory, 0.05, start_ns));
     send_markers(corridor_, edge_marker("corridor", polytopes, 0.02, start_ns));
 
     const std::int64_t now_ns = node_.now_ns();
     MarkerArray array;
-    if (path_.request().id() == request.id) {
+    if (path_.request().id() == committed->id()) {
       array.markers().push_back(line_marker("path as searched", conversions::from_msg(path_.raw()),
                                             0.02, {0.79, 0.64, 1.0}, now_ns));
       array.markers().push_back(line_marker("pruned path", conversions::from_msg(path_.waypoints()),
@@ -106,7 +107,8 @@ class VisualizerComponent : public Component {
     }
     array.markers().push_back(face_marker(polytopes, now_ns));
     array.markers().push_back(edge_marker("corridor edges", polytopes, 0.015, now_ns));
-    array.markers().push_back(trajectory_marker(trajectory, request.limits.v_max_m_s, now_ns));
+    array.markers().push_back(
+        trajectory_marker(trajectory, committed->nominal().limits().v_max_m_s, now_ns));
     reporter_.send(plan_, array);
   }
 

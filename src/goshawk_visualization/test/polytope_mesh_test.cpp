@@ -155,7 +155,7 @@ TEST(Edges, LieOnTwoPlanesEachAndAreListedOnce) {
     EXPECT_EQ(std::set(found.begin(), found.end()).size(), found.size());
     for (const auto& [from, to] : found) {
       const Vec3 middle = 0.5 * (mesh.corners[from] + mesh.corners[to]);
-      EXPECT_GE(((polytope.A * middle - polytope.b).array() > -1e-5).count(), 2);
+      EXPECT_GE(((polytope.A() * middle - polytope.b()).array() > -1e-5).count(), 2);
     }
   }
 }

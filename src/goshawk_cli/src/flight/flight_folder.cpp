@@ -1,10 +1,12 @@
 #include "flight/flight_folder.hpp"
 
+#include <fmt/format.h>
+
 #include <fstream>
 
-#include "folders.hpp"
 #include "goshawk/flight_report/files.hpp"
 #include "goshawk/flight_report/page.hpp"
+#include "process.hpp"
 
 namespace goshawk::cli {
 namespace {
@@ -13,16 +15,13 @@ double seconds(std::int64_t ns, std::int64_t origin_ns) {
   return double(ns - origin_ns) * 1e-9;
 }
 
-flight_report::Leg make_leg(const CommittedRecord& committed, const FlightRecorder& record,
+flight_report::Leg make_leg(const CommittedTrajectory& committed, const FlightRecorder& record,
                             std::int64_t origin_ns) {
-  flight_report::Leg leg;
-  if (const auto r = record.requests().find(committed.request_id); r != record.requests().end()) {
+  auto leg = flight_report::Leg::of(committed, origin_ns);
+  if (const auto r = record.requests().find(committed.id()); r != record.requests().end()) {
     leg.raw_path_map = conversions::from_msg(r->second.path.raw());
     leg.waypoints_map = conversions::from_msg(r->second.path.waypoints());
   }
-  leg.corridor = committed.polytopes;
-  leg.trajectory = committed.trajectory;
-  leg.start_t_s = seconds(committed.start_ns, origin_ns);
   return leg;
 }
 
@@ -42,7 +41,8 @@ Status write_flight(const std::string& folder, const Json& summary, const Flight
   std::ofstream json(folder + "/flight.json");
   json << summary.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
   if (!json.flush()) {
-    return fail(ErrorCode::io_failed, folder + "/flight.json cannot be written: is the disk full?");
+    return fail(ErrorCode::io_failed,
+                fmt::format("{}/flight.json cannot be written: is the disk full?", folder));
   }
   if (record.flown().empty()) return success();
   const VoxelGrid raw{.geometry = map.raw.geometry, .occupied = map.raw.occupied, .known = {}};
@@ -54,7 +54,7 @@ Status write_flight(const std::string& folder, const Json& summary, const Flight
   const std::int64_t origin_ns = record.flown().front().stamp_ns;
   for (const auto& committed : record.committed()) {
     flight.legs.push_back(make_leg(committed, record, origin_ns));
-    flight.limits = committed.limits;
+    flight.limits = committed.nominal().limits();
   }
   for (const auto& [stamp_ns, state] : record.flown()) {
     flight.flown.push_back(
@@ -63,7 +63,7 @@ Status write_flight(const std::string& folder, const Json& summary, const Flight
   if (auto drawn = flight_report::write_flight_folder(flight, folder); !drawn) return drawn;
   return flight_report::write_flight_page(
       flight, page_template(), folder + "/flight.html",
-      summary.dump(-1, ' ', false, Json::error_handler_t::replace));
+      to_line(summary));
 }
 
 }  // namespace goshawk::cli

@@ -2,9 +2,11 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "goshawk/conversions/plan.hpp"
+#include "goshawk/core/stage_role.hpp"
 #include "goshawk/core/vehicle.hpp"
 #include "goshawk/runtime/node.hpp"
 #include "goshawk_msgs.h"
@@ -23,20 +25,11 @@ struct TrackedError {
   double position_error_m = 0.0;
 };
 
-/// What the stages said of one request.
+/// What the stages reported about one request.
 struct RequestRecord {
   goshawk_msgs::msg::Path path;
   goshawk_msgs::msg::Corridor corridor;
-  std::map<std::string, goshawk_msgs::msg::StageReport> reports;  // newest of each stage
-};
-
-/// A trajectory as it was committed.
-struct CommittedRecord {
-  std::uint64_t request_id = 0;
-  std::int64_t start_ns = 0;
-  Limits limits;
-  Trajectory trajectory;
-  std::vector<Polytope> polytopes;
+  std::map<StageRole, goshawk_msgs::msg::StageReport> reports;  // newest of each stage
 };
 
 /// Listens to a whole flight, sends goals, and keeps what came.
@@ -49,11 +42,12 @@ class FlightRecorder {
   /// Listens until done() or for timeout_s. @return whether done() came true
   bool listen(double timeout_s, const std::function<bool()>& done);
 
-  bool is_ready(const std::string& stage) const { return ready_.contains(stage); }
-  const goshawk_msgs::msg::NavigatorState& navigator() const { return navigator_; }
+  bool is_ready(StageRole stage) const { return ready_.contains(stage); }
+  /// The navigator's answer to the newest goal, or nothing before it.
+  const std::optional<goshawk_msgs::msg::NavigatorState>& navigator() const { return navigator_; }
   const std::vector<FlownState>& flown() const { return flown_; }
   const std::vector<TrackedError>& errors() const { return errors_; }
-  const std::vector<CommittedRecord>& committed() const { return committed_; }
+  const std::vector<CommittedTrajectory>& committed() const { return committed_; }
   const std::map<std::uint64_t, RequestRecord>& requests() const { return requests_; }
   std::int64_t now_ns() const { return node_.now_ns(); }
   int goal_readers() const { return goals_.matched(); }
@@ -64,12 +58,12 @@ class FlightRecorder {
 
   runtime::Node& node_;
   runtime::Publisher<geometry_msgs::msg::PoseStamped> goals_;
-  std::set<std::string> ready_;
-  goshawk_msgs::msg::NavigatorState navigator_;
+  std::set<StageRole> ready_;
+  std::optional<goshawk_msgs::msg::NavigatorState> navigator_;
   std::vector<FlownState> flown_;
   bool knows_truth_ = false;
   std::vector<TrackedError> errors_;
-  std::vector<CommittedRecord> committed_;
+  std::vector<CommittedTrajectory> committed_;
   std::map<std::uint64_t, RequestRecord> requests_;
 };
 

@@ -25,6 +25,18 @@ auto run_stage(Plan& plan, std::string name, std::string implementation, Work&& 
   return std::move(result);
 }
 
+Result<map_server::OcTreePtr> read_tree(const map_server::Config& config) {
+  auto source = map_server::load_map(config.map_file, map_server::load_options(config));
+  if (!source) return source.error();
+  return source->tree;
+}
+
+Result<map_server::OcTreePtr> world_tree(const worlds::WorldSpec& spec) {
+  const auto world = worlds::make_world(spec);
+  if (!world) return world.error();
+  return map_server::make_octree(world->geometry, world->occupied, {});
+}
+
 }  // namespace
 
 Result<PlanningConfig> PlanningConfig::read(const runtime::RosArgs& args) {
@@ -45,15 +57,15 @@ Result<PlanningConfig> PlanningConfig::read(const runtime::RosArgs& args) {
   return c;
 }
 
-Result<LoadedMap> load_map(const map_server::Config& config) {
-  auto source = map_server::load_map(config.map_file, map_server::load_options(config));
-  if (!source) return source.error();
-  auto raw = map_server::voxelize(*source->tree, map_server::voxelize_options(config));
+Result<LoadedMap> load_map(const PlanningConfig& config, const worlds::WorldSpec& world) {
+  auto tree = config.needs_world() ? world_tree(world) : read_tree(config.map);
+  if (!tree) return tree.error();
+  auto raw = map_server::voxelize(**tree, map_server::voxelize_options(config.map));
   if (!raw) return raw.error();
-  auto grown = map_server::make_voxel_grid(*raw, map_server::growth(config), 1);
+  auto grown = map_server::make_voxel_grid(*raw, map_server::growth(config.map), 1);
   if (!grown) return grown.error();
   return LoadedMap{*std::move(raw), std::make_shared<const VoxelGrid>(*std::move(grown)),
-                   source->tree, map_server::growth(config).unknown};
+                   *std::move(tree), map_server::growth(config.map).unknown};
 }
 
 Result<Planner> Planner::create(const PlanningConfig& config) {
@@ -73,37 +85,32 @@ void Planner::set_map(const LoadedMap& map) {
   search_.set_map(grid_);
 }
 
-Plan Planner::plan(const FlatState& start, const FlatState& goal, const Limits& limits,
-                   const std::vector<Vec3>& other_goals_map) {
+Plan Planner::plan(const PlanRequest& request) {
   Plan plan;
-  plan.start = start;
-  plan.goal = goal;
-  plan.limits = limits;
-  std::vector<Vec3> goals_map = {goal.position};
-  goals_map.insert(goals_map.end(), other_goals_map.begin(), other_goals_map.end());
-  plan.outcome = run(start, goals_map, limits, plan);
+  plan.request = request;
+  plan.outcome = run(plan);
   return plan;
 }
 
-Status Planner::run(const FlatState& start, const std::vector<Vec3>& goals_map,
-                    const Limits& limits, Plan& plan) {
-  if (auto status = limits.check(); !status) return status;
-  auto path = run_stage(plan, "path_search", std::string(search_.planner_name()), [&] {
-    return search_.plan({.start_map = start.position, .goals_map = goals_map});
-  });
+Status Planner::run(Plan& plan) {
+  PlanRequest& request = plan.request;
+  if (auto status = check(request); !status) return status;
+  auto path = run_stage(plan, "path_search", std::string(search_.planner_name()),
+                        [&] { return search_.plan(request); });
   if (!path) return path.error();
   plan.path = *std::move(path);
   // The search may have moved the ends, or chosen another goal.
-  plan.start.position = plan.path->waypoints_map.front();
-  plan.goal.position = plan.path->waypoints_map.back();
+  request.start.position = plan.path->waypoints_map.front();
+  request.goal.position = plan.path->waypoints_map.back();
   const auto raw = raw_->obstacles(grid_->inflation_m);
   auto corridor = run_stage(plan, "corridor_builder", std::string(builder_.implementation()),
                             [&] { return builder_.build(*grid_, plan.path->waypoints_map, &raw); });
   if (!corridor) return corridor.error();
   plan.corridor = *std::move(corridor);
-  auto solution =
-      run_stage(plan, "trajectory_optimizer", std::string(optimizer_.implementation()),
-                [&] { return optimizer_.optimise(*plan.corridor, plan.start, plan.goal, limits); });
+  auto solution = run_stage(
+      plan, "trajectory_optimizer", std::string(optimizer_.implementation()), [&] {
+        return optimizer_.optimise(*plan.corridor, request.start, request.goal, request.limits);
+      });
   if (!solution) return solution.error();
   plan.solution = *std::move(solution);
   return success();

@@ -3,12 +3,13 @@
 #include <memory>
 #include <optional>
 
-#include "goshawk/core/certificate.hpp"
+#include "goshawk/core/plan_request.hpp"
 #include "goshawk/corridor_builder/raw_map.hpp"
 #include "goshawk/map_server/config.hpp"
 #include "goshawk/path_search/path_search.hpp"
 #include "goshawk/runtime/ros_args.hpp"
 #include "goshawk/trajectory_optimizer/trajectory_optimizer.hpp"
+#include "goshawk/worlds/world.hpp"
 
 namespace goshawk::cli {
 
@@ -20,6 +21,9 @@ struct PlanningConfig {
   trajectory_optimizer::Config trajectory;
 
   static Result<PlanningConfig> read(const runtime::RosArgs& args);
+
+  /// Whether the parameters name no map: then a made world stands for it.
+  bool needs_world() const { return map.map_file.empty() && !map.use_box; }
 };
 
 struct StageTime {
@@ -35,12 +39,13 @@ struct LoadedMap {
   map_server::OcTreePtr tree;
   map_server::UnknownPolicy unknown = map_server::UnknownPolicy::occupied;
 };
-Result<LoadedMap> load_map(const map_server::Config& config);
+/// @param world that is made if the config names no map
+Result<LoadedMap> load_map(const PlanningConfig& config,
+                           const worlds::WorldSpec& world = worlds::default_world());
 
 /// What came out of each stage, as far as it went.
 struct Plan {
-  FlatState start, goal;  // what the trajectory was asked to begin and end with
-  Limits limits;
+  PlanRequest request;  // start and goal as the search moved them
   std::vector<StageTime> stages;
   std::optional<path_search::PlannedPath> path;
   std::optional<Corridor> corridor;
@@ -53,9 +58,7 @@ class Planner {
  public:
   static Result<Planner> create(const PlanningConfig& config);
   void set_map(const LoadedMap& map);
-  /// @param other_goals_map [m] positions that will do as well as the goal's
-  Plan plan(const FlatState& start, const FlatState& goal, const Limits& limits,
-            const std::vector<Vec3>& other_goals_map = {});
+  Plan plan(const PlanRequest& request);
 
  private:
   Planner(path_search::PathSearch search, corridor_builder::CorridorBuilder builder,
@@ -63,8 +66,7 @@ class Planner {
       : search_(std::move(search)),
         builder_(std::move(builder)),
         optimizer_(std::move(optimizer)) {}
-  Status run(const FlatState& start, const std::vector<Vec3>& goals_map, const Limits& limits,
-             Plan& plan);
+  Status run(Plan& plan);
 
   path_search::PathSearch search_;
   corridor_builder::CorridorBuilder builder_;

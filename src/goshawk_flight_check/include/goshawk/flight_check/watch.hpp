@@ -11,8 +11,9 @@ namespace goshawk::flight_check {
 /// A trajectory that is to be flown.
 struct Plan {
   std::uint64_t request_id = 0;
-  double start_s = 0.0;       // [s] when its first sample is due, on the clock of the odometry
-  std::vector<Sample> track;  // times count from the start
+  double start_s = 0.0;         // [s] when it begins, on the clock of the odometry
+  std::vector<Sample> nominal;  // to the goal; times count from the start
+  std::vector<Sample> stop;     // to rest, from where it leaves the nominal part; or empty
 };
 
 /// What a watch has to say.

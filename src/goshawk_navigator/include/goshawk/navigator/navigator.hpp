@@ -6,7 +6,10 @@
 #include <variant>
 #include <vector>
 
-#include "goshawk/core/trajectory.hpp"
+#include "goshawk/core/committed_trajectory.hpp"
+#include "goshawk/core/plan_request.hpp"
+#include "goshawk/core/stage_role.hpp"
+#include "goshawk/core/vehicle.hpp"
 #include "goshawk/navigator/config.hpp"
 
 namespace goshawk::navigator {
@@ -14,27 +17,16 @@ namespace goshawk::navigator {
 enum class State { idle, planning, flying, arrived, failed };
 std::string_view to_string(State state);
 
-/// What the navigator wants done; the component turns it into messages.
-struct PlanOrder {
-  std::uint64_t id = 0;
-  std::int64_t stamp_ns = 0;
-  FlatState start;
-  FlatState goal;
-  double yaw_rad = 0.0;
-  double deadline_s = 0.0;
-};
-struct CommitOrder {
-  std::uint64_t id = 0;
-  std::int64_t start_time_ns = 0;
-  double yaw_rad = 0.0;
-};
+/// What the navigator tells everyone.
 struct StateOrder {
   State state = State::idle;
-  std::uint64_t id = 0;
+  std::uint64_t id = 0;        // of the newest request, 0 before any
+  std::uint64_t flown_id = 0;  // of the trajectory that is flown or held at its end; 0: none
   Vec3 goal_map = Vec3::Zero();
   Error reason{ErrorCode::ok, ""};
 };
-using Order = std::variant<PlanOrder, CommitOrder, StateOrder>;
+/// What the navigator wants sent; the component turns it into messages.
+using Order = std::variant<PlanRequest, CommittedTrajectory, StateOrder>;
 
 /// From goals to committed trajectories. Knows no middleware and no clock: every event brings the
 /// time, and leaves orders to take.
@@ -53,14 +45,14 @@ class Navigator {
   /// @return invalid_parameter: out of range, or what cannot change at run time; then as before
   Status reconfigure(const Config& config);
 
-  /// @param yaw_rad heading at the goal, map x to y @return invalid_input where not finite
+  /// @param yaw_rad heading at the goal, map x to y @return invalid_input if not finite
   Status on_goal(const Vec3& goal_map, double yaw_rad, std::int64_t now_ns);
-  void on_odometry(const Vec3& position_map, const Vec3& velocity_map, std::int64_t now_ns);
-  /// A certified trajectory for request `id`. Others than the open request's are ignored.
-  void on_trajectory(std::uint64_t id, Trajectory trajectory, std::int64_t now_ns);
+  void on_odometry(const RigidBodyState& vehicle, std::int64_t now_ns);
+  /// An answer to a request; others than the open one's are ignored.
+  /// @param candidate without start time and yaw, which are set here
+  void on_trajectory(Commitment candidate, std::int64_t now_ns);
   /// A stage has answered a request: with ok, or with why not.
-  void on_report(std::uint64_t id, std::string_view stage, const Error& outcome,
-                 std::int64_t now_ns);
+  void on_report(std::uint64_t id, StageRole stage, const Error& outcome, std::int64_t now_ns);
   /// Regularly, some 50 times a second: timeouts and arrival.
   void tick(std::int64_t now_ns);
 
@@ -75,19 +67,26 @@ class Navigator {
   struct Open {  // the request that waits for its answer
     std::uint64_t id = 0;
     std::int64_t asked_ns = 0;
-    std::optional<std::int64_t> switch_ns;  // moving start: when the new trajectory must begin
-    std::string last_stage;                 // that answered ok
+    std::optional<std::int64_t> switch_ns;    // moving start: when the new trajectory must begin
+    StageRole last_stage = StageRole::other;  // that answered ok
   };
   struct Flight {
-    std::uint64_t id = 0;
-    Trajectory trajectory;
-    std::int64_t start_ns = 0;
+    CommittedTrajectory committed;
     std::int64_t end_ns = 0;
     Goal goal;
   };
+  struct Start {  // what a plan begins with
+    FlatState state;
+    double yaw_rad = 0.0;
+    double yaw_rate_rad_s = 0.0;
+    std::optional<std::int64_t> time_ns = {};  // none: at rest, whenever
+  };
 
   void plan(std::int64_t now_ns);
-  void ask(const FlatState& start, std::optional<std::int64_t> switch_ns, std::int64_t now_ns);
+  Start start_on(const Flight& flight, std::int64_t time_ns) const;
+  Start start_at_rest() const;
+  void ask(const Start& start, std::int64_t now_ns);
+  void drop_open();
   void plan_again(const Error& reason, std::int64_t now_ns);
   void give_up(const Error& reason);
   void tracker_failed(const Error& reason, std::int64_t now_ns);
@@ -99,6 +98,7 @@ class Navigator {
 
   Config config_;
   std::uint64_t next_id_;
+  std::uint64_t newest_id_ = 0;  // of the newest request
   State state_ = State::idle;
   Goal goal_;
   bool goal_open_ = false;  // a goal that no committed trajectory leads to yet
@@ -107,9 +107,9 @@ class Navigator {
   std::int64_t wait_begin_ns_ = 0;  // since when a plan waits for the vehicle to come to rest
   double lead_s_;
   std::optional<Open> open_;
+  std::uint64_t dropped_id_ = 0;  // a request that nobody needs an answer to any more
   std::optional<Flight> flight_;
-  Vec3 position_map_ = Vec3::Zero();
-  Vec3 velocity_map_ = Vec3::Zero();
+  RigidBodyState vehicle_;
   std::optional<std::int64_t> odometry_ns_;
   std::vector<Order> orders_;
 };

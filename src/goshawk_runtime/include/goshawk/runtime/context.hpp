@@ -1,6 +1,10 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,9 +17,13 @@ struct ContextOptions {
   int domain = 0;                       // 0 to 232
   std::string interfaces = "loopback";  // "loopback", "all", or IPv4 addresses with commas
   std::vector<std::string> node_names;  // full names, for `goshawk node list`
+  /// For tests: is given each datagram that arrives, before it is checked, and each one sent. It is
+  /// called by Fast DDS' threads, several at once.
+  std::function<void(std::span<const std::byte> datagram, bool sent)> tap{};
 
-  /// ROS_DOMAIN_ID and GOSHAWK_INTERFACES, where they are set.
-  /// @return invalid_parameter for a domain that is no number from 0 to 232
+  /// ROS_DOMAIN_ID and GOSHAWK_INTERFACES, if they are set.
+  /// @return invalid_parameter for a domain that is not a number from 0 to 232, or for empty
+  /// interfaces
   static Result<ContextOptions> from_environment();
 };
 
@@ -32,26 +40,31 @@ struct ParticipantInfo {
   std::string guid_prefix;
   std::string name;
   std::vector<std::string> nodes;
-  std::string version = "";  // of Goshawk; empty: another program, or one that does not tell
+  std::string version = "";  // of Goshawk; empty: another program, or one that does not say
 };
 
 /// One DDS participant: a process' membership in a domain.
 ///
 /// An XML profile file (FASTRTPS_DEFAULT_PROFILES_FILE) with a default participant profile
-/// decides alone about transports; else they are UDP on the chosen interfaces, by default on
-/// loopback only, found without multicast.
+/// decides about transports; without one they are UDP on the chosen interfaces, by default on
+/// loopback only, found without multicast. Either way, every datagram is checked before Fast DDS
+/// reads it.
 class Context {
  public:
   struct Impl;
 
-  /// @return invalid_parameter for a domain or an interface that is not there, io_failed with a
-  /// sentence where the domain cannot be joined
+  /// @return invalid_parameter for a domain or an interface that does not exist, io_failed if the
+  /// domain cannot be joined
   static Result<std::unique_ptr<Context>> create(const ContextOptions& options);
   ~Context();
 
   int domain() const;
   std::vector<ParticipantInfo> participants() const;  // others, not this one
   std::vector<EndpointInfo> endpoints() const;        // of others
+
+  /// Malformed or forged datagrams, which Fast DDS was not given (docs/security.md).
+  std::uint64_t refused_datagrams() const;
+  std::string last_refusal() const;  // what was wrong and who sent it; empty: none yet
 
   Impl& impl() { return *impl_; }
 
