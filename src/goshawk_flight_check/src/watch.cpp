@@ -108,7 +108,8 @@ void Watch::tick(double now_s) {
 // What is left of the plan, against a newer map. Only news is told.
 void Watch::judge_plan_anew(double now_s) {
   const double t_s = plan_ ? now_s - plan_->start_s : 0.0;
-  const bool is_over = !plan_ || (from(plan_->nominal, t_s).empty() && from(plan_->stop, t_s).empty());
+  const bool is_over =
+      !plan_ || (from(plan_->nominal, t_s).empty() && from(plan_->stop, t_s).empty());
   if (is_over) return;
   auto verdict = judge_parts(*check_, *plan_, t_s, plan_is_judged_ ? 0.0 : kAnyClearance);
   const bool is_news = !plan_is_judged_ || !verdict || verdict->touched;

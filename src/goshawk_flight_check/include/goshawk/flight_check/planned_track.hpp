@@ -25,8 +25,8 @@ Quaternion flat_attitude(const Vec3& acceleration_map, double yaw_rad);
 /// @param step_s [s] longest time between two samples, > 0
 /// @param yaw_rad_at heading [rad] at a time [s]; none: 0
 /// @param start_s [s] when the first piece begins; the samples and yaw_rad_at count from there
-/// @return samples from start_s to the end of the last piece; invalid_input for no piece, a number that
-/// is not finite, a duration or a step that is not above zero, or more than 10^7 samples
+/// @return samples from start_s to the end of the last piece; invalid_input for no piece, a number
+/// that is not finite, a duration or a step that is not above zero, or more than 10^7 samples
 Result<std::vector<Sample>> planned_track(std::span<const PlannedPiece> pieces,
                                           double step_s = 0.01,
                                           const std::function<double(double)>& yaw_rad_at = {},
