@@ -1,4 +1,4 @@
-#include "goshawk/flight_report/polytope_mesh.hpp"
+#include "goshawk/visualization/polytope_mesh.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,11 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "goshawk/core/random.hpp"
 
-namespace goshawk::flight_report {
+namespace goshawk::visualization {
 namespace {
 
 /// By the divergence theorem, which also needs the faces closed and turned outwards.
@@ -134,6 +135,35 @@ TEST(ClosedMesh, StaysClosedWherePlanesNearlyMeetInAPoint) {
   }
 }
 
+TEST(Edges, OfABoxAreItsTwelve) {
+  const Mesh mesh = closed_mesh(Polytope::box({1, 2, 3}, {2, 4, 6}));
+  double length_m = 0.0;
+  for (const auto& [from, to] : edges(mesh)) {
+    length_m += (mesh.corners[from] - mesh.corners[to]).norm();
+  }
+  EXPECT_EQ(edges(mesh).size(), 12U);
+  EXPECT_NEAR(length_m, 4.0 * (1.0 + 2.0 + 3.0), 1e-9);
+}
+
+TEST(Edges, LieOnTwoPlanesEachAndAreListedOnce) {
+  Random random(11);
+  for (int k = 0; k < 50; ++k) {
+    const Polytope polytope = random_polytope(random, 12);
+    const Mesh mesh = closed_mesh(polytope);
+    const auto found = edges(mesh);
+    EXPECT_EQ(mesh.corners.size() + mesh.faces.size(), found.size() + 2);  // Euler
+    EXPECT_EQ(std::set(found.begin(), found.end()).size(), found.size());
+    for (const auto& [from, to] : found) {
+      const Vec3 middle = 0.5 * (mesh.corners[from] + mesh.corners[to]);
+      EXPECT_GE(((polytope.A() * middle - polytope.b()).array() > -1e-5).count(), 2);
+    }
+  }
+}
+
+TEST(Edges, OfAnEmptyPolytopeAreNone) {
+  EXPECT_TRUE(edges(closed_mesh(Polytope{})).empty());
+}
+
 TEST(ConvexHull, HoldsEveryPointAndTurnsLeftOnly) {
   Random random(9);
   for (int k = 0; k < 100; ++k) {
@@ -160,4 +190,4 @@ TEST(ConvexHull, OfFewOrAlignedPointsIsNoPolygon) {
 }
 
 }  // namespace
-}  // namespace goshawk::flight_report
+}  // namespace goshawk::visualization

@@ -1,10 +1,10 @@
-#include "goshawk/flight_report/polytope_mesh.hpp"
+#include "goshawk/visualization/polytope_mesh.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
-namespace goshawk::flight_report {
+namespace goshawk::visualization {
 
 namespace {
 
@@ -95,6 +95,17 @@ Mesh closed_mesh(const Polytope& polytope) {
   return mesh;
 }
 
+std::vector<std::pair<std::size_t, std::size_t>> edges(const Mesh& mesh) {
+  std::vector<std::pair<std::size_t, std::size_t>> result;
+  for (const auto& face : mesh.faces) {
+    for (std::size_t i = 0; i < face.size(); ++i) {
+      const std::size_t from = face[i], to = face[(i + 1) % face.size()];
+      if (from < to) result.emplace_back(from, to);  // the neighbouring face passes it backwards
+    }
+  }
+  return result;
+}
+
 std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points) {
   std::sort(points.begin(), points.end(), [](const auto& a, const auto& b) {
     return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());
@@ -117,4 +128,4 @@ std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points) {
   return hull;
 }
 
-}  // namespace goshawk::flight_report
+}  // namespace goshawk::visualization

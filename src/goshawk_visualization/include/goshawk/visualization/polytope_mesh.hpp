@@ -1,10 +1,11 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "goshawk/core/polytope.hpp"
 
-namespace goshawk::flight_report {
+namespace goshawk::visualization {
 
 /// The corners of one face, counter-clockwise seen from outside. Frame `map`, [m].
 using Polygon = std::vector<Vec3>;
@@ -26,8 +27,11 @@ struct Mesh {
 /// @return an empty mesh for an empty polytope. @pre polytope.check() ok
 Mesh closed_mesh(const Polytope& polytope);
 
+/// The mesh's edges, each once: indices of its two corners, the smaller one first.
+std::vector<std::pair<std::size_t, std::size_t>> edges(const Mesh& mesh);
+
 /// @return the corners of the convex hull, counter-clockwise (Andrew's monotone chain, 1979);
-/// fewer than three where the points are fewer or all on a line
+/// fewer than three if the points are fewer or all on a line
 std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points);
 
-}  // namespace goshawk::flight_report
+}  // namespace goshawk::visualization
