@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "common/measure.hpp"
+#include "goshawk/baselines/thesis_form.hpp"
 #include "goshawk/core/random.hpp"
 #include "goshawk/trajectory_optimizer/active_set_solver.hpp"
 #include "goshawk/trajectory_optimizer/plan.hpp"
@@ -80,7 +81,7 @@ SplineProblem fixed_problem(int segments) {
   goal.position = corridor.waypoints_map.back();
   const Limits limits{.norm = LimitNorm::per_axis};
   const Request request{corridor, start, goal, limits};
-  Plan plan = thesis_plan(request);
+  Plan plan = baselines::thesis_plan(request);
   SplineSolver solver;
   SplineProblem problem;
   Units units;
@@ -131,13 +132,13 @@ Json binding_row(double factor, LimitNorm norm, int rounds) {
   const auto soonest = optimizer.optimise(corridor, start, goal, limits);
   if (!soonest) throw std::runtime_error(soonest.error().message);
   Plan plan;
-  plan.joints.push_back(start);
+  plan.knots.push_back(start);
   for (const BezierPiece& piece : soonest->trajectory.pieces) {
     plan.durations_s.push_back(factor * piece.duration_s);
     plan.polytopes.push_back(piece.polytope);
     FlatState end;
     end.position = piece.control_points.col(5);
-    plan.joints.push_back(end);
+    plan.knots.push_back(end);
   }
   plan.reference_s = plan.duration_s();
   SplineProblem problem;

@@ -34,7 +34,7 @@ constexpr Verb kVerbs[] = {
     {"launch", "start what a launch file lists, supervised, until Ctrl-C", &cli::launch_command},
     {"view", "look at a flight, or live with --live, in a browser", &cli::view_command},
     {"run", "start one component: goshawk run COMPONENT --ros-args ...", &cli::run_command},
-    {"bench", "measure plans over DDS, or a stage beside its rivals", &cli::bench_command},
+    {"bench", "measure plans over DDS, or a stage beside its baselines", &cli::bench_command},
     {"conform", "examine a stage, whoever wrote it, item by item", &cli::conform_command},
     {"record", "record topics to an MCAP file, until Ctrl-C", &recording::record_command},
     {"replay", "play a recording over DDS, or list what is in it", &recording::replay_command},

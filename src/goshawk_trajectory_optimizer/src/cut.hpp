@@ -55,7 +55,7 @@ struct Cutter {
 inline void append(Plan& plan, double duration_s, int polytope, const FlatState& end) {
   plan.durations_s.push_back(duration_s);
   plan.polytopes.push_back(polytope);
-  plan.joints.push_back(end);
+  plan.knots.push_back(end);
 }
 
 }  // namespace goshawk::trajectory_optimizer

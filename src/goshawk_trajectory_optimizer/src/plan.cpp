@@ -53,7 +53,7 @@ Plan cut_trapezoid(const Request& request, const Config& config, const Lead& lea
   plan.at_moving_end = lead.first_piece;
   const auto cutter = Cutter::of(request, config, plan.reference_s, plan.at_moving_end);
   double begin = 0.0;
-  plan.joints.push_back(request.start);
+  plan.knots.push_back(request.start);
   for (int k = 0; k < profile.segments(); ++k) {
     const double trapezoid =
         plan.stays ? plan.reference_s / profile.segments() : profile.duration_s(k);
@@ -65,36 +65,19 @@ Plan cut_trapezoid(const Request& request, const Config& config, const Lead& lea
     });
     begin += duration;
   }
-  plan.joints.back() = request.goal;
+  plan.knots.back() = request.goal;
   plan.braking_s = lead.braking * StartAllowance::of(request.start, request.limits).until_s;
-  return plan;
-}
-
-Plan thesis_plan(const Request& request) {
-  const auto& waypoints = request.corridor.waypoints_map;
-  Plan plan;
-  plan.joints.push_back(request.start);
-  for (std::size_t k = 0; k + 1 < waypoints.size(); ++k) {
-    const double length = std::max((waypoints[k + 1] - waypoints[k]).norm(), kLeastLength);
-    FlatState end;
-    end.position = waypoints[k + 1];
-    append(plan,
-           rest_to_rest_duration_s(length, request.limits.v_max_m_s, request.limits.a_max_m_s2),
-           int(k), end);
-  }
-  plan.joints.back() = request.goal;
-  plan.reference_s = plan.duration_s();
   return plan;
 }
 
 namespace {
 
-Joint to_units(const FlatState& state, const Units& units) {
-  Joint joint;
-  joint.col(0) = (state.position - units.origin_map) / units.length_m;
-  joint.col(1) = state.velocity * (units.time_s / units.length_m);
-  joint.col(2) = state.acceleration * (units.time_s * units.time_s / units.length_m);
-  return joint;
+Knot to_units(const FlatState& state, const Units& units) {
+  Knot knot;
+  knot.col(0) = (state.position - units.origin_map) / units.length_m;
+  knot.col(1) = state.velocity * (units.time_s / units.length_m);
+  knot.col(2) = state.acceleration * (units.time_s * units.time_s / units.length_m);
+  return knot;
 }
 
 // Adds the faces that control point j of piece k must stay behind.
@@ -106,22 +89,22 @@ class FaceWriter {
 
   // @return false where the point is constant and outside
   bool add(int piece, int j) {
-    const int joint = j < 3 ? piece : piece + 1;
+    const int knot = j < 3 ? piece : piece + 1;
     const PointMap map = position_point(j, problem_.durations[std::size_t(piece)]);
     const Polytope& polytope =
         request_.corridor.polytopes[std::size_t(plan_.polytopes[std::size_t(piece)])];
     const Vec3 coefficients = j < 3 ? map.from_first : map.from_second;
-    const bool end = joint == 0 || joint == problem_.pieces();
-    if (end) return add_at_end(joint, coefficients, polytope);
+    const bool end = knot == 0 || knot == problem_.pieces();
+    if (end) return add_at_end(knot, coefficients, polytope);
     const int begin = int(problem_.faces.size());
-    const Vec3 near = problem_.joints[std::size_t(joint)] * coefficients;
+    const Vec3 near = problem_.knots[std::size_t(knot)] * coefficients;
     for (int i = 0; i < polytope.faces(); ++i) {
       const Vec3 normal = polytope.A.row(i).transpose();
       const double bound = offset(polytope, i);
       if ((bound - normal.dot(near)) * units_.length_m <= reach_m_)
         problem_.faces.push_back({normal, bound});
     }
-    finish(joint, coefficients, begin);
+    finish(knot, coefficients, begin);
     return true;
   }
 
@@ -130,15 +113,15 @@ class FaceWriter {
     return (polytope.b[i] - polytope.A.row(i).dot(units_.origin_map)) / units_.length_m;
   }
 
-  void finish(int joint, const Vec3& coefficients, int begin) {
+  void finish(int knot, const Vec3& coefficients, int begin) {
     const int end = int(problem_.faces.size());
-    if (end > begin) problem_.face_points.push_back({joint, coefficients, begin, end});
+    if (end > begin) problem_.face_points.push_back({knot, coefficients, begin, end});
   }
 
   // An end moves with the time scale only. Faces that it moves away from need no constraint.
-  bool add_at_end(int joint, const Vec3& coefficients, const Polytope& polytope) {
-    const Joint& x = problem_.joints[std::size_t(joint)];
-    const Joint& rate = joint == 0 ? problem_.start_rate : problem_.goal_rate;
+  bool add_at_end(int knot, const Vec3& coefficients, const Polytope& polytope) {
+    const Knot& x = problem_.knots[std::size_t(knot)];
+    const Knot& rate = knot == 0 ? problem_.start_rate : problem_.goal_rate;
     const Vec3 y = x * coefficients;
     const bool moves = problem_.scale && !rate.isZero(0.0);
     const int begin = int(problem_.faces.size());
@@ -151,7 +134,7 @@ class FaceWriter {
                            coefficients[2] * normal.dot(x.col(2)) <= 0.0;
       if (moves && !departs) problem_.faces.push_back({normal, bound});
     }
-    finish(joint, coefficients, begin);
+    finish(knot, coefficients, begin);
     return true;
   }
 
@@ -231,16 +214,16 @@ bool make_problem(const Request& request, const Plan& plan, bool scale, double t
   };
   if (is_moving(request.start)) loosen(0);
   if (is_moving(request.goal)) loosen(m - 1);
-  for (const FlatState& joint : plan.joints) problem.joints.push_back(to_units(joint, units));
+  for (const FlatState& knot : plan.knots) problem.knots.push_back(to_units(knot, units));
   if (scale) {  // v' = v sqrt(eta), a' = a eta
-    const auto rate = [](const Joint& x) {
-      Joint r = Joint::Zero();
+    const auto rate = [](const Knot& x) {
+      Knot r = Knot::Zero();
       r.col(1) = 0.5 * x.col(1);
       r.col(2) = x.col(2);
       return r;
     };
-    problem.start_rate = rate(problem.joints.front());
-    problem.goal_rate = rate(problem.joints.back());
+    problem.start_rate = rate(problem.knots.front());
+    problem.goal_rate = rate(problem.knots.back());
   }
   FaceWriter faces(request, plan, units, reach_m, problem);
   bool inside = true;
@@ -254,26 +237,25 @@ bool make_problem(const Request& request, const Plan& plan, bool scale, double t
   return inside;
 }
 
-void take_solution(const Request& request, const std::vector<Joint>& joints, const Units& units,
+void take_solution(const Request& request, const std::vector<Knot>& knots, const Units& units,
                    double kappa, Plan& plan) {
   const double time = units.time_s * kappa;
   for (double& duration : plan.durations_s) duration *= kappa;
-  for (std::size_t k = 1; k + 1 < joints.size(); ++k) {
-    FlatState& state = plan.joints[k];
-    state.position = units.origin_map + units.length_m * joints[k].col(0);
-    state.velocity = (units.length_m / time) * joints[k].col(1);
-    state.acceleration = (units.length_m / (time * time)) * joints[k].col(2);
+  for (std::size_t k = 1; k + 1 < knots.size(); ++k) {
+    FlatState& state = plan.knots[k];
+    state.position = units.origin_map + units.length_m * knots[k].col(0);
+    state.velocity = (units.length_m / time) * knots[k].col(1);
+    state.acceleration = (units.length_m / (time * time)) * knots[k].col(2);
   }
-  plan.joints.front() = request.start;
-  plan.joints.back() = request.goal;
+  plan.knots.front() = request.start;
+  plan.knots.back() = request.goal;
 }
 
 Trajectory make_trajectory(const Plan& plan) {
   Trajectory trajectory;
   trajectory.pieces.reserve(plan.durations_s.size());
   for (std::size_t k = 0; k < plan.durations_s.size(); ++k) {
-    trajectory.pieces.push_back(
-        BezierPiece::between(plan.joints[k], plan.joints[k + 1], plan.durations_s[k]));
+    trajectory.pieces.push_back(plan.piece(k));
     trajectory.pieces.back().polytope = plan.polytopes[k];
   }
   return trajectory;

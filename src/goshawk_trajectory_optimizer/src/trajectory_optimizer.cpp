@@ -1,19 +1,48 @@
 #include "goshawk/trajectory_optimizer/trajectory_optimizer.hpp"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "goshawk/trajectory_optimizer/request_check.hpp"
-#include "method.hpp"
+#include "strategies.hpp"
 
 namespace goshawk::trajectory_optimizer {
 namespace {
 
 constexpr double kLongest_s = 1e6;
 
+Status check_duration(double duration_s) {
+  if (duration_s >= 0.0 && duration_s <= kLongest_s) return success();
+  return fail(ErrorCode::invalid_input,
+              fmt::format("a duration of {} s is out of range: ask for up to 1e6 s, or for 0 to "
+                          "arrive as soon as the limits allow",
+                          duration_s));
+}
+
+// When to arrive; nothing: as soon as the limits allow.
+std::optional<double> arrival_s(const Task& task, const Flight& soonest) {
+  if (task.request.duration_s > 0.0) return task.request.duration_s;
+  const double extra = task.config.extra_time;
+  if (extra > 0.0) return (1.0 + extra) * soonest.trajectory.duration_s();
+  return {};
+}
+
+Result<Flight> answer(const Task& task) {
+  auto soonest = fastest(task);
+  if (!soonest) return no_flight(task);
+  auto flight = within_vehicle(task, *std::move(soonest));
+  if (!flight) return flight;
+  if (const auto duration_s = arrival_s(task, *flight)) {
+    return arrive_after(task, *duration_s, *std::move(flight));
+  }
+  return flight;
+}
+
 }  // namespace
 
 TrajectoryOptimizer::TrajectoryOptimizer(const Config& config)
-    : method_(std::make_unique<Method>(config)) {}
+    : config_(config), workspace_(std::make_unique<Workspace>()) {}
 TrajectoryOptimizer::TrajectoryOptimizer(TrajectoryOptimizer&&) noexcept = default;
 TrajectoryOptimizer& TrajectoryOptimizer::operator=(TrajectoryOptimizer&&) noexcept = default;
 TrajectoryOptimizer::~TrajectoryOptimizer() = default;
@@ -36,24 +65,22 @@ Result<Solution> TrajectoryOptimizer::optimise(const Corridor& corridor, const F
                                                const FlatState& goal, const Limits& limits,
                                                const Query& query) {
   if (auto status = check_request(corridor, start, goal, limits); !status) return status.error();
-  if (!(query.duration_s >= 0.0 && query.duration_s <= kLongest_s)) {
-    return fail(ErrorCode::invalid_input, "a duration of " + std::to_string(query.duration_s) +
-                                              " s was asked for: 0 (soon) or up to 1e6 s is meant");
-  }
-  return method_->answer({corridor, start, goal, limits, query.duration_s, &query.out_of_time});
-}
-
-Result<Solution> TrajectoryOptimizer::stop(const Polytope& free_space, const FlatState& start,
-                                           const Limits& limits) {
-  return method_->stop(free_space, start, limits);
+  if (auto status = check_duration(query.duration_s); !status) return status.error();
+  const Request request{corridor, start, goal, limits, query.duration_s, &query.out_of_time};
+  Effort effort;
+  auto flight = answer({request, config_, *workspace_, effort});
+  if (!flight) return flight.error();
+  const int pieces = int(flight->trajectory.pieces.size());
+  return Solution{std::move(flight->trajectory),
+                  flight->certificate,
+                  effort.iterations,
+                  effort.solves,
+                  pieces,
+                  flight->jerk_cost};
 }
 
 std::string_view TrajectoryOptimizer::implementation() const {
-  const std::string& method = method_->config().method;
-  if (method == "thesis") return "bezier-thesis";
-  if (method == "minimum_snap") return "polynomial-minimum-snap";
-  if (method == "polynomial") return "polynomial-rechecked";
-  return method == "fixed" ? "bezier-fixed" : "bezier-scale";
+  return config_.method == "fixed" ? "bezier-fixed" : "bezier-scale";
 }
 
 }  // namespace goshawk::trajectory_optimizer

@@ -1,5 +1,7 @@
 #include "goshawk/trajectory_optimizer/yaw.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -29,9 +31,9 @@ Status check(const Trajectory& trajectory, const YawRequest& r) {
     return fail(ErrorCode::invalid_input, "a yaw request is not finite");
   }
   if (!(std::isfinite(r.rate_max_rad_s) && r.rate_max_rad_s > 0.0)) {
-    return fail(ErrorCode::invalid_limits, "a yaw rate limit of " +
-                                               std::to_string(r.rate_max_rad_s) +
-                                               " rad/s: it must be finite and above zero");
+    return fail(ErrorCode::invalid_limits,
+                fmt::format("a yaw rate limit of {} rad/s: it must be finite and above zero",
+                            r.rate_max_rad_s));
   }
   return success();
 }

@@ -1,4 +1,4 @@
-// A given arrival, a stop, a deadline, and every kind of limit.
+// A given arrival, a deadline, and every kind of limit.
 #include <gtest/gtest.h>
 
 #include "corridor_maker.hpp"
@@ -65,32 +65,6 @@ TEST(GivenArrival, FromAMovingStart) {
   ASSERT_TRUE(solution) << solution.error().message;
   EXPECT_TRUE(solution->certificate.holds());
   EXPECT_NEAR(solution->trajectory.duration_s(), 6.0, 1e-9);
-}
-
-TEST(Stop, IsNearlyAsShortAsBrakingAllows) {
-  auto optimizer = default_optimizer();
-  const Polytope room = Polytope::box(Vec3(-10, -10, -10), Vec3(10, 10, 10));
-  for (const double v : {0.2, 1.0, 2.0, 3.0}) {
-    SCOPED_TRACE(v);
-    auto start = at_rest(Vec3::Zero());
-    start.velocity = v * Vec3(0.6, -0.64, 0.48);
-    const auto solution = optimizer.stop(room, start, {});
-    ASSERT_TRUE(solution) << solution.error().message;
-    EXPECT_TRUE(solution->certificate.holds());
-    const double duration_s = solution->trajectory.duration_s();
-    EXPECT_GE(duration_s, v / 2.0 * 0.999);
-    EXPECT_LE(duration_s, 1.6 * v / 2.0 + 0.1);
-    EXPECT_LT(solution->trajectory.sample(duration_s).velocity.norm(), 1e-9);
-  }
-}
-
-TEST(Stop, WithoutRoomSaysSo) {
-  auto optimizer = default_optimizer();
-  auto start = at_rest(Vec3::Zero());
-  start.velocity = Vec3(2.0, 0, 0);  // needs 1 m
-  const auto solution = optimizer.stop(Polytope::box(Vec3(-1, -1, -1), Vec3(0.5, 1, 1)), start, {});
-  ASSERT_FALSE(solution);
-  EXPECT_GT(solution.error().message.size(), 20u);
 }
 
 TEST(Deadline, EndsTheWork) {

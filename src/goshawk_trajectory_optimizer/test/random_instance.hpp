@@ -70,7 +70,7 @@ inline Instance random_instance(Random& random, bool scale, double stretch) {
   return i;
 }
 
-inline double difference(const std::vector<Joint>& a, const std::vector<Joint>& b) {
+inline double difference(const std::vector<Knot>& a, const std::vector<Knot>& b) {
   double largest = 0.0;
   for (std::size_t k = 0; k < a.size(); ++k) {
     largest = std::max(largest, (a[k].col(0) - b[k].col(0)).cwiseAbs().maxCoeff());

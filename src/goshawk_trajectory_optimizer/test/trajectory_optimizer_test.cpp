@@ -200,30 +200,5 @@ TEST(TrajectoryOptimizer, FixedDurationsAreStretchedUntilFeasible) {
   }
 }
 
-TEST(TrajectoryOptimizer, ThesisFormIsCertifiedOrSaysThatItIsInfeasible) {
-  Config config;
-  config.method = "thesis";
-  auto optimizer = make(config);
-  Random random(22);
-  int solved = 0;
-  int refused = 0;
-  for (int i = 0; i < 200; ++i) {
-    const auto corridor = test::random_corridor(random, random_kind(random));
-    const auto solution = from_rest(optimizer, corridor);
-    if (!solution) {
-      EXPECT_EQ(solution.code(), ErrorCode::trajectory_infeasible) << solution.error().message;
-      ++refused;
-      continue;
-    }
-    ++solved;
-    EXPECT_EQ(solution->pieces, int(corridor.polytopes.size()));
-    Limits per_axis;
-    per_axis.norm = LimitNorm::per_axis;
-    ASSERT_NO_FATAL_FAILURE(expect_flyable(*solution, corridor, per_axis));
-  }
-  EXPECT_GT(refused, 0);
-  EXPECT_GT(solved, 0);
-}
-
 }  // namespace
 }  // namespace goshawk::trajectory_optimizer

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <vector>
 
 #include "goshawk/core/polytope.hpp"
@@ -23,11 +24,11 @@ struct Request {
   bool rests() const;
 };
 
-/// Pieces with durations and a guess of the joints between them: what a solve begins with.
+/// Pieces with durations and a guess of the knots between them: what a solve begins with.
 struct Plan {
   std::vector<double> durations_s;  // m
   std::vector<int> polytopes;       // m: where each piece lives
-  std::vector<FlatState> joints;    // m + 1
+  std::vector<FlatState> knots;     // m + 1
   std::vector<double> a_factors;    // m, or none: of the acceleration limit, at most 1
   double at_moving_end = 1.0;       // the first piece there, in longest ones
   double reference_s = 0.0;         // [s] duration of the trapezoid, above zero
@@ -35,6 +36,13 @@ struct Plan {
   bool stays = false;               // no way to go: any duration will do
 
   double duration_s() const;
+  BezierPiece piece(std::size_t k) const {
+    return BezierPiece::between(knots[k], knots[k + 1], durations_s[k]);
+  }
+  /// Multiplies the durations, and leaves the knots as they are.
+  void stretch(double factor) {
+    for (double& duration : durations_s) duration *= factor;
+  }
   double a_factor(std::size_t piece) const { return a_factors.empty() ? 1.0 : a_factors[piece]; }
 };
 
@@ -50,8 +58,6 @@ struct Lead {
 /// Cuts the trapezoid over the corridor's waypoints into pieces of at most config.piece_duration_s.
 /// @param lead plays no part from rest to rest
 Plan cut_trapezoid(const Request& request, const Config& config, const Lead& lead = {});
-/// One piece a segment, each as long as from rest to rest (thesis, time allocation, corrected).
-Plan thesis_plan(const Request& request);
 
 /// The units of a SplineProblem: positions from `origin_map` in `length_m`, times in `time_s`,
 /// so chosen that v_max and a mean piece are 1.
@@ -68,6 +74,9 @@ double corner_reach_m(const Plan& plan, const Limits& limits);
 /// for smoothness.
 double natural_jerk(const Plan& plan, const Limits& limits);
 
+/// The reach that leaves no face out.
+inline constexpr double kAllFaces = std::numeric_limits<double>::infinity();
+
 /// @param scale whether the time scale is an unknown; a moving end is then linearised at eta = 1
 /// @param reach_m faces farther than this from a control point of the plan's guess are left out;
 /// the answer must then be checked against all of them
@@ -78,8 +87,8 @@ double natural_jerk(const Plan& plan, const Limits& limits);
 bool make_problem(const Request& request, const Plan& plan, bool scale, double time_weight,
                   double reach_m, SplineProblem& problem, Units& units, double end_slack = 0.0);
 
-/// The joints of a solution in SI units, the ends exactly as asked, durations times kappa.
-void take_solution(const Request& request, const std::vector<Joint>& joints, const Units& units,
+/// The knots of a solution in SI units, the ends exactly as asked, durations times kappa.
+void take_solution(const Request& request, const std::vector<Knot>& knots, const Units& units,
                    double kappa, Plan& plan);
 Trajectory make_trajectory(const Plan& plan);
 

@@ -22,6 +22,8 @@ struct Solution {
   double jerk_cost = 0.0;  // [m^2/s^5] integral of the squared jerk
 };
 
+struct Workspace;
+
 /// What a flight may ask beyond its ends and limits.
 struct Query {
   double duration_s = 0.0;  // [s] arrive after exactly this; 0: as fast as the limits allow
@@ -48,23 +50,19 @@ class TrajectoryOptimizer {
   ///   and until when (StartAllowance)
   /// @return a certified solution; else invalid_input, invalid_limits, corridor_disjoint,
   ///   start_infeasible (the start state breaks a limit, or leaves the corridor whatever is
-  ///   done), trajectory_infeasible (also a duration that is too short), deadline_exceeded,
-  ///   not_certified (methods that do not know the corridor) or solver_failed
+  ///   done), trajectory_infeasible (also a duration that is too short), deadline_exceeded or
+  ///   solver_failed
   Result<Solution> optimise(const Corridor& corridor, const FlatState& start, const FlatState& goal,
                             const Limits& limits, const Query& query = {});
 
-  /// Comes to rest as soon as a trajectory is found for, anywhere ahead in a convex free space.
-  /// @param free_space frame `map`; holds the start
-  /// @return as optimise(); its only polytope is free_space
-  Result<Solution> stop(const Polytope& free_space, const FlatState& start, const Limits& limits);
-
-  /// Which method answers, for reports: "bezier-scale", "bezier-fixed", "bezier-thesis".
+  /// Which method answers, for reports: "bezier-scale" or "bezier-fixed".
   std::string_view implementation() const;
 
  private:
-  class Method;
   explicit TrajectoryOptimizer(const Config& config);
-  std::unique_ptr<Method> method_;
+
+  Config config_;
+  std::unique_ptr<Workspace> workspace_;
 };
 
 }  // namespace goshawk::trajectory_optimizer

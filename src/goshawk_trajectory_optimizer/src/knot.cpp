@@ -1,9 +1,9 @@
-#include "goshawk/trajectory_optimizer/joint_spline.hpp"
+#include "goshawk/trajectory_optimizer/knot.hpp"
 
 namespace goshawk::trajectory_optimizer {
 namespace {
 
-// A map and its mirror image in time, which swaps the joints and the sign of odd derivatives.
+// A map and its mirror image in time, which swaps the knots and the sign of odd derivatives.
 PointMap first_only(double p, double v, double a) {
   return {Vec3(p, v, a), Vec3::Zero()};
 }

@@ -1,0 +1,87 @@
+#include "goshawk/baselines/baseline_optimizer.hpp"
+#include "goshawk/runtime/component.hpp"
+#include "goshawk/runtime/stage.hpp"
+
+namespace goshawk::baselines {
+namespace {
+
+using namespace goshawk::runtime;
+using trajectory_optimizer::Solution;
+namespace msg = goshawk_msgs::msg;
+
+BaselineOptimizer make_optimizer(const Config& config) {
+  auto optimizer = BaselineOptimizer::create(config);
+  if (!optimizer) throw StartupFault(optimizer.error());
+  return *std::move(optimizer);
+}
+
+/// corridor -> trajectory, in the place of trajectory_optimizer
+class BaselineOptimizerComponent : public Component {
+ public:
+  explicit BaselineOptimizerComponent(Node& node)
+      : node_(node),
+        optimizer_(make_optimizer(
+            node.parameters<Config>([this](const Config& c) { return reconfigure(c); }))),
+        reporter_(node, std::string(optimizer_.implementation())),
+        publisher_(node.advertise<msg::BezierTrajectory>("trajectory", Qos::reliable_last())) {
+    node.subscribe<msg::Corridor>(
+        "corridor", Qos::reliable_last(),
+        [this](const msg::Corridor& m, const MessageInfo& info) { on_corridor(m, info); });
+    reporter_.ready("plans with " + std::string(optimizer_.implementation()));
+  }
+
+ private:
+  Status reconfigure(const Config& config) {
+    if (auto status = optimizer_.reconfigure(config); !status) return status;
+    reporter_.set_implementation(std::string(optimizer_.implementation()));
+    return success();
+  }
+
+  void on_corridor(const msg::Corridor& m, const MessageInfo& info) {
+    Timing timing{.wire_ns = wire_time_ns(m.header(), info)};
+    auto request = open_request(m.request(), node_.now_ns(), reporter_, timing);
+    if (!request) return;
+    auto [solution, compute_ns] = timed([&]() -> Result<Solution> {
+      const auto corridor = conversions::from_msg(m);
+      if (!corridor) return corridor.error();
+      return optimizer_.optimise(*corridor, request->start, request->goal, request->limits,
+                                 {.duration_s = request->duration_s, .out_of_time = [&] {
+                                    return !conversions::check_deadline(*request, node_.now_ns());
+                                  }});
+    });
+    timing.compute_ns = compute_ns;
+    if (!solution) return reporter_.failed(request->id, solution.error(), timing);
+    if (auto status = publish(m, *solution, compute_ns); !status) {
+      return reporter_.failed(request->id, status.error(), timing);
+    }
+    reporter_.answered(request->id, timing,
+                       {{"pieces", double(solution->trajectory.pieces.size())},
+                        {"duration_s", solution->trajectory.duration_s()},
+                        {"length_m", solution->trajectory.length_m()},
+                        {"jerk_cost", solution->jerk_cost}});
+  }
+
+  Status publish(const msg::Corridor& corridor, const Solution& solution, std::int64_t compute_ns) {
+    msg::BezierTrajectory m;
+    m.request(corridor.request());
+    m.implementation(std::string(optimizer_.implementation()));
+    m.map_version(corridor.map_version());
+    m.pieces(conversions::to_msg(solution.trajectory));
+    m.polytopes(corridor.polytopes());
+    m.certificate(conversions::to_msg(solution.certificate));
+    m.compute_ns(compute_ns);
+    m.header(conversions::make_header(node_.now_ns()));
+    return publisher_.publish(m);
+  }
+
+  Node& node_;
+  BaselineOptimizer optimizer_;
+  StageReporter reporter_;
+  Publisher<msg::BezierTrajectory> publisher_;
+};
+
+}  // namespace
+}  // namespace goshawk::baselines
+
+GOSHAWK_REGISTER_COMPONENT(goshawk::baselines::BaselineOptimizerComponent,
+                           goshawk::baselines::Config)
