@@ -5,8 +5,8 @@
 #include "goshawk/conversions/plan.hpp"
 #include "goshawk/conversions/vehicle.hpp"
 #include "goshawk/runtime/component.hpp"
-#include "goshawk/runtime/map_subscription.hpp"
-#include "goshawk/runtime/stage.hpp"
+#include "goshawk/stage/intake.hpp"
+#include "goshawk/stage/map_subscription.hpp"
 #include "goshawk/tracker/config.hpp"
 #include "goshawk/tracker/tracker.hpp"
 
@@ -14,9 +14,8 @@ namespace goshawk::tracker {
 namespace {
 
 using namespace goshawk::runtime;
+using namespace goshawk::stage;
 namespace msg = goshawk_msgs::msg;
-
-constexpr std::int64_t kComplainEvery_ns = 1'000'000'000;
 
 Tracker make_tracker(const Config& config) {
   auto tracker = Tracker::create(config);
@@ -126,16 +125,16 @@ class TrackerComponent : public Component {
 
   void on_odometry(const nav_msgs::msg::Odometry& m) {
     const auto state = conversions::from_msg(m);
-    if (!state) return complain(state.error());
+    if (!state) return reporter_.complain(state.error());
     const std::int64_t stamp_ns = conversions::to_ns(m.header().stamp());
     const std::int64_t now_ns = node_.now_ns();
     const auto [command, compute_ns] =
         timed([&] { return tracker_.step(*state, stamp_ns, now_ns); });
     count_step(compute_ns, now_ns);
-    if (!command) return complain(command.error());
+    if (!command) return reporter_.complain(command.error());
     conversions::fill_msg(*command, command_message_);
     command_message_.header(conversions::make_header(node_.now_ns()));
-    if (auto status = commands_.publish(command_message_); !status) complain(status.error());
+    reporter_.send(commands_, command_message_);
     if (waiting_) {
       accept(*waiting_, {});
       waiting_.reset();
@@ -179,7 +178,7 @@ class TrackerComponent : public Component {
       if (status.lost_trajectory_id != 0 || status.fault.code != ErrorCode::tracking_lost) {
         reporter_.failed(status.lost_trajectory_id, status.fault);
       } else {
-        complain(status.fault);
+        reporter_.complain(status.fault);
       }
     }
     reported_ = status.fault.message;
@@ -195,15 +194,7 @@ class TrackerComponent : public Component {
     m.time_in_trajectory(status.progress_s);
     m.reference(conversions::to_point(status.reference.position));
     m.position_error(status.error_m);
-    if (auto sent = states_.publish(m); !sent) complain(sent.error());
-  }
-
-  // Bad odometry comes 250 times a second: one sentence a second tells as much.
-  void complain(const Error& error) {
-    const std::int64_t now_ns = node_.now_ns();
-    if (now_ns - complained_ns_ < kComplainEvery_ns) return;
-    complained_ns_ = now_ns;
-    reporter_.fault(error);
+    reporter_.send(states_, m);
   }
 
   Node& node_;
@@ -218,7 +209,6 @@ class TrackerComponent : public Component {
   StepStatistics steps_;
   Timing accepted_;       // of the newest trajectory that was
   std::string reported_;  // the newest fault's sentence
-  std::int64_t complained_ns_ = 0;
 };
 
 }  // namespace
