@@ -1,11 +1,12 @@
 #include "goshawk/baselines/baseline_optimizer.hpp"
 #include "goshawk/runtime/component.hpp"
-#include "goshawk/runtime/stage.hpp"
+#include "goshawk/stage/intake.hpp"
 
 namespace goshawk::baselines {
 namespace {
 
 using namespace goshawk::runtime;
+using namespace goshawk::stage;
 using trajectory_optimizer::Solution;
 namespace msg = goshawk_msgs::msg;
 
