@@ -1,7 +1,7 @@
 #pragma once
 
-#include "goshawk/runtime/context.hpp"
 #include "flight/launch_process.hpp"
+#include "goshawk/runtime/context.hpp"
 
 namespace goshawk::cli {
 

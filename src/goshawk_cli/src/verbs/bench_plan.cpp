@@ -4,10 +4,10 @@
 #include <map>
 #include <optional>
 
+#include "flight/launch_process.hpp"
 #include "folders.hpp"
 #include "goshawk/conversions/plan.hpp"
 #include "goshawk/runtime/node.hpp"
-#include "flight/launch_process.hpp"
 #include "planning/map_options.hpp"
 #include "verbs.hpp"
 

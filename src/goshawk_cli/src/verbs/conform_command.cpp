@@ -2,10 +2,10 @@
 #include <filesystem>
 #include <fstream>
 
+#include "flight/launch_process.hpp"
 #include "folders.hpp"
 #include "goshawk/conformance/conform.hpp"
 #include "goshawk/runtime/component.hpp"
-#include "flight/launch_process.hpp"
 #include "verbs.hpp"
 
 namespace goshawk::cli {

@@ -8,14 +8,14 @@
 #include <functional>
 
 #include "flight/flight_folder.hpp"
-#include "verbs/fly_options.hpp"
-#include "goshawk/map_server/octree.hpp"
-#include "goshawk/worlds/world.hpp"
 #include "flight/launch_process.hpp"
-#include "planning/plan_json.hpp"
 #include "flight/random_tour.hpp"
 #include "flight/recorder_process.hpp"
+#include "goshawk/map_server/octree.hpp"
+#include "goshawk/worlds/world.hpp"
+#include "planning/plan_json.hpp"
 #include "verbs.hpp"
+#include "verbs/fly_options.hpp"
 
 namespace goshawk::cli {
 
