@@ -5,42 +5,42 @@
 namespace goshawk {
 namespace {
 
-struct Named {
+struct CodeName {
   ErrorCode code;
   std::string_view name;
 };
 
 constexpr std::array kNames{
-    Named{ErrorCode::ok, "ok"},
-    Named{ErrorCode::invalid_input, "invalid_input"},
-    Named{ErrorCode::invalid_parameter, "invalid_parameter"},
-    Named{ErrorCode::invalid_limits, "invalid_limits"},
-    Named{ErrorCode::wrong_frame, "wrong_frame"},
-    Named{ErrorCode::map_unreadable, "map_unreadable"},
-    Named{ErrorCode::map_malformed, "map_malformed"},
-    Named{ErrorCode::map_empty, "map_empty"},
-    Named{ErrorCode::map_too_large, "map_too_large"},
-    Named{ErrorCode::no_map, "no_map"},
-    Named{ErrorCode::start_outside, "start_outside"},
-    Named{ErrorCode::start_occupied, "start_occupied"},
-    Named{ErrorCode::start_unknown, "start_unknown"},
-    Named{ErrorCode::goal_outside, "goal_outside"},
-    Named{ErrorCode::goal_occupied, "goal_occupied"},
-    Named{ErrorCode::goal_unknown, "goal_unknown"},
-    Named{ErrorCode::no_path, "no_path"},
-    Named{ErrorCode::segment_blocked, "segment_blocked"},
-    Named{ErrorCode::corridor_disjoint, "corridor_disjoint"},
-    Named{ErrorCode::trajectory_infeasible, "trajectory_infeasible"},
-    Named{ErrorCode::start_infeasible, "start_infeasible"},
-    Named{ErrorCode::solver_failed, "solver_failed"},
-    Named{ErrorCode::not_certified, "not_certified"},
-    Named{ErrorCode::deadline_exceeded, "deadline_exceeded"},
-    Named{ErrorCode::not_at_start, "not_at_start"},
-    Named{ErrorCode::tracking_lost, "tracking_lost"},
-    Named{ErrorCode::stage_silent, "stage_silent"},
-    Named{ErrorCode::io_failed, "io_failed"},
-    Named{ErrorCode::collision, "collision"},
-    Named{ErrorCode::cancelled, "cancelled"},
+    CodeName{ErrorCode::ok, "ok"},
+    CodeName{ErrorCode::invalid_input, "invalid_input"},
+    CodeName{ErrorCode::invalid_parameter, "invalid_parameter"},
+    CodeName{ErrorCode::invalid_limits, "invalid_limits"},
+    CodeName{ErrorCode::wrong_frame, "wrong_frame"},
+    CodeName{ErrorCode::map_unreadable, "map_unreadable"},
+    CodeName{ErrorCode::map_malformed, "map_malformed"},
+    CodeName{ErrorCode::map_empty, "map_empty"},
+    CodeName{ErrorCode::map_too_large, "map_too_large"},
+    CodeName{ErrorCode::no_map, "no_map"},
+    CodeName{ErrorCode::start_outside, "start_outside"},
+    CodeName{ErrorCode::start_occupied, "start_occupied"},
+    CodeName{ErrorCode::start_unknown, "start_unknown"},
+    CodeName{ErrorCode::goal_outside, "goal_outside"},
+    CodeName{ErrorCode::goal_occupied, "goal_occupied"},
+    CodeName{ErrorCode::goal_unknown, "goal_unknown"},
+    CodeName{ErrorCode::no_path, "no_path"},
+    CodeName{ErrorCode::segment_blocked, "segment_blocked"},
+    CodeName{ErrorCode::corridor_disjoint, "corridor_disjoint"},
+    CodeName{ErrorCode::trajectory_infeasible, "trajectory_infeasible"},
+    CodeName{ErrorCode::start_infeasible, "start_infeasible"},
+    CodeName{ErrorCode::solver_failed, "solver_failed"},
+    CodeName{ErrorCode::not_certified, "not_certified"},
+    CodeName{ErrorCode::deadline_exceeded, "deadline_exceeded"},
+    CodeName{ErrorCode::not_at_start, "not_at_start"},
+    CodeName{ErrorCode::tracking_lost, "tracking_lost"},
+    CodeName{ErrorCode::stage_silent, "stage_silent"},
+    CodeName{ErrorCode::io_failed, "io_failed"},
+    CodeName{ErrorCode::collision, "collision"},
+    CodeName{ErrorCode::cancelled, "cancelled"},
 };
 
 constexpr auto kCodes = [] {

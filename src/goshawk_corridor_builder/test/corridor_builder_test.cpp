@@ -89,7 +89,9 @@ TEST(CorridorBuilder, TheCheckerSeesPlanesThatAreAMicrometreTooFarOut) {
     auto corridor = builder.build(grid, path);
     ASSERT_TRUE(corridor.ok());
     EXPECT_EQ(faults_of(*corridor, grid, path), "");
-    for (Polytope& polytope : corridor->polytopes) polytope.b.array() += 1e-6;
+    for (Polytope& polytope : corridor->polytopes) {
+      for (HalfSpace& face : polytope.half_spaces) face.offset_m += 1e-6;
+    }
     EXPECT_NE(faults_of(*corridor, grid, path), "");
   }
 }
@@ -104,7 +106,7 @@ TEST(CorridorBuilder, NeverCutsIntoAnObstacleWithOtherSettings) {
 
 TEST(CorridorBuilder, BoxesNeverCutIntoAnObstacle) {
   Tally tally;
-  prove_many({.generator = "box"}, 5, 150, 15, tally);
+  prove_many({.generator = Generator::box}, 5, 150, 15, tally);
   EXPECT_GE(tally.segments, 3000);
   EXPECT_EQ(tally.disjoint, 0);
 }
@@ -167,15 +169,16 @@ TEST(CorridorBuilder, FollowsATunnelOfOneVoxelWithHalfAVoxelAtEveryTurn) {
   EXPECT_LT(corridor->min_overlap_radius_m(), 0.1);
 }
 
-class BothGenerators : public ::testing::TestWithParam<const char*> {
+class BothGenerators : public ::testing::TestWithParam<Generator> {
  protected:
   CorridorBuilder builder_ = builder_of({.generator = GetParam()});
 };
 
-INSTANTIATE_TEST_SUITE_P(Corridor, BothGenerators, ::testing::Values("ellipsoid", "box"));
+INSTANTIATE_TEST_SUITE_P(Corridor, BothGenerators,
+                         ::testing::Values(Generator::ellipsoid, Generator::box));
 
 TEST_P(BothGenerators, SaysItsName) {
-  EXPECT_EQ(builder_.implementation(), GetParam());
+  EXPECT_EQ(builder_.implementation(), to_word(GetParam()));
 }
 
 TEST_P(BothGenerators, RefusesAPathThatIsNoPath) {
@@ -309,7 +312,7 @@ TEST(CorridorBuilder, FillsAnEmptyWorldWithOnePolytope) {
 
 TEST(CorridorBuilder, ConfigFaultsAreAllListedAtOnce) {
   const auto made = CorridorBuilder::create(
-      {.generator = "magic", .local_box_m = kNaN, .max_segment_m = 0.0, .growth_passes = -1});
+      {.generator = Generator(9), .local_box_m = kNaN, .max_segment_m = 0.0, .growth_passes = -1});
   ASSERT_FALSE(made.ok());
   EXPECT_EQ(made.code(), ErrorCode::invalid_parameter);
   for (const char* name : {"generator", "local_box_m", "max_segment_m", "growth_passes"}) {
@@ -322,7 +325,7 @@ bool same_bits(const Corridor& a, const Corridor& b) {
   for (std::size_t k = 0; k < a.polytopes.size(); ++k) {
     const Polytope& p = a.polytopes[k];
     const Polytope& q = b.polytopes[k];
-    if (p.faces() != q.faces() || p.A != q.A || p.b != q.b) return false;
+    if (p != q) return false;
   }
   for (std::size_t k = 0; k < a.overlaps.size(); ++k) {
     if (a.overlaps[k].center_map != b.overlaps[k].center_map) return false;
@@ -368,8 +371,8 @@ TEST_P(BothGenerators, MovesWithTheWorldByWholeVoxels) {
       const Polytope& p = a->polytopes[i];
       const Polytope& q = b->polytopes[i];
       ASSERT_EQ(p.faces(), q.faces());
-      EXPECT_LT((p.A - q.A).cwiseAbs().maxCoeff(), 1e-12);
-      EXPECT_LT((p.b + p.A * shift - q.b).cwiseAbs().maxCoeff(), 1e-11);
+      EXPECT_LT((p.A() - q.A()).cwiseAbs().maxCoeff(), 1e-12);
+      EXPECT_LT((p.b() + p.A() * shift - q.b()).cwiseAbs().maxCoeff(), 1e-11);
     }
   }
 }
@@ -388,7 +391,7 @@ TEST(CorridorBuilder, ANewConfigBuildsAsOneThatBeganWithIt) {
   const VoxelGrid grid = world_with_wall();
   const std::vector<Vec3> path{{1.1, 1.1, 0.5}, {1.5, 1.1, 1.5}, {2.7, 1.1, 1.5}, {3.1, 1.1, 0.5}};
   Config boxes;
-  boxes.generator = "box";
+  boxes.generator = Generator::box;
   CorridorBuilder builder = builder_of({});
   ASSERT_TRUE(builder.build(grid, path));
   ASSERT_TRUE(builder.reconfigure(boxes));
@@ -397,8 +400,7 @@ TEST(CorridorBuilder, ANewConfigBuildsAsOneThatBeganWithIt) {
   ASSERT_TRUE(wanted && got);
   ASSERT_EQ(got->polytopes.size(), wanted->polytopes.size());
   for (std::size_t k = 0; k < got->polytopes.size(); ++k) {
-    EXPECT_EQ(got->polytopes[k].A, wanted->polytopes[k].A);
-    EXPECT_EQ(got->polytopes[k].b, wanted->polytopes[k].b);
+    EXPECT_EQ(got->polytopes[k], wanted->polytopes[k]);
   }
   Config bad;
   bad.max_faces = 3;

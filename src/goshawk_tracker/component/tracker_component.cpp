@@ -102,19 +102,22 @@ class TrackerComponent : public Component {
   }
 
   void accept(const msg::CommittedTrajectory& m, Timing timing) {
-    const std::uint64_t id = m.trajectory().request().id();
-    auto received = conversions::from_msg(m.trajectory());
+    const std::uint64_t id = m.nominal().request().id();
+    const auto received = conversions::from_msg(m);
     if (!received) return reporter_.failed(id, received.error(), timing);
+    const auto& last = received->stop() ? received->stop()->trajectory : received->nominal();
     CommittedTrajectory committed{.id = id,
-                                  .trajectory = std::move(received->trajectory),
-                                  .polytopes = std::move(received->polytopes),
-                                  .limits = received->request.limits,
-                                  .start = received->request.start,
-                                  .goal = received->request.goal,
-                                  .start_time_ns = conversions::to_ns(m.start_time()),
-                                  .yaw_rad = m.yaw(),
-                                  .yaw_step_s = m.trajectory().yaw_step(),
-                                  .yaw_points_rad = m.trajectory().yaw_points()};
+                                  .trajectory = received->flown(),
+                                  .polytopes = received->flown_polytopes(),
+                                  .limits = received->nominal().limits(),
+                                  .start = received->nominal().start(),
+                                  .goal = last.goal(),
+                                  .start_time_ns = received->start_time_ns(),
+                                  .yaw_rad = received->yaw_rad()};
+    if (const auto& curve = received->yaw_curve()) {
+      committed.yaw_step_s = curve->step_s;
+      committed.yaw_points_rad = curve->points_rad;
+    }
     const auto [status, compute_ns] =
         timed([&] { return tracker_.accept(std::move(committed), node_.now_ns()); });
     timing.compute_ns = compute_ns;

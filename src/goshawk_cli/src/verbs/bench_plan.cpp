@@ -98,7 +98,7 @@ class PlanTimer {
 
   Node& node_;
   Publisher<msg::PlanRequest> requests_;
-  conversions::PlanRequest request_;
+  PlanRequest request_;
   std::map<std::string, std::string> ready_;
   Sample sample_;
   std::int64_t final_wire_ns_ = 0;
