@@ -44,7 +44,7 @@ std::optional<Planner> Planner::make(const std::string& name) {
   if (name == "goshawk") {
     planner.optimizer_ = trajectory_optimizer::TrajectoryOptimizer::create({}).value();
   } else {
-    planner.baseline_ = baselines::BaselineOptimizer::create({name}).value();
+    planner.baseline_ = baselines::BaselineOptimizer::create({from_word<baselines::Method>(name).value()}).value();
   }
   return planner;
 }
@@ -79,11 +79,12 @@ Flight Planner::plan(const Task& task) {
 }
 
 Result<Trajectory> Planner::optimise(const Task& task, const Corridor& corridor) {
-  const FlatState start = at_rest(task.start), goal = at_rest(task.goal);
-  auto solution = baseline_ ? baseline_->optimise(corridor, start, goal, task.limits)
-                            : optimizer_->optimise(corridor, start, goal, task.limits);
+  const PlanRequest request{
+      .start = at_rest(task.start), .goal = at_rest(task.goal), .limits = task.limits};
+  auto solution = baseline_ ? baseline_->optimise(request, corridor)
+                            : optimizer_->optimise(request, corridor);
   if (!solution) return solution.error();
-  return std::move(solution->trajectory);
+  return solution->trajectory();
 }
 
 bool is_safe(const Trajectory& trajectory, const VoxelGrid& grid) {

@@ -16,9 +16,9 @@ Lanes four_of(const Vec3& v) {
 // The control points of a piece have the faces of one polytope.
 bool same_faces(const SplineProblem& problem, const FacePoint& a, const FacePoint& b) {
   const int count = a.end - a.begin;
-  const Face* faces = problem.faces.data();
+  const HalfSpace* faces = problem.faces.data();
   return b.end - b.begin == count &&
-         std::memcmp(faces + a.begin, faces + b.begin, std::size_t(count) * sizeof(Face)) == 0;
+         std::memcmp(faces + a.begin, faces + b.begin, std::size_t(count) * sizeof(HalfSpace)) == 0;
 }
 
 double* doubles_of(Lanes& first) {
@@ -104,15 +104,15 @@ void ActiveSetSolver::Memory::load_faces(const SplineProblem& problem) {
 void ActiveSetSolver::Memory::pack_faces(const SplineProblem& problem, const FacePoint& point) {
   double probe = 0.0;  // not zero where anything is not finite
   for (int i = point.begin; i < point.end; ++i) {
-    const Face& face = problem.faces[std::size_t(i)];
-    probe += 0.0 * (face.normal[0] + face.normal[1] + face.normal[2] + face.offset);
+    const HalfSpace& face = problem.faces[std::size_t(i)];
+    probe += 0.0 * (face.normal[0] + face.normal[1] + face.normal[2] + face.offset_m);
     const int lane = (i - point.begin) % 4;
     if (lane == 0) faces_.push_back({Lanes{}, Lanes{}, Lanes{}, Lanes{1.0, 1.0, 1.0, 1.0}});
     FourFaces& four = faces_.back();
     four.nx[lane] = face.normal[0];
     four.ny[lane] = face.normal[1];
     four.nz[lane] = face.normal[2];
-    four.offset[lane] = face.offset;
+    four.offset[lane] = face.offset_m;
   }
   finite = finite && probe == 0.0;
 }
@@ -120,8 +120,8 @@ void ActiveSetSolver::Memory::pack_faces(const SplineProblem& problem, const Fac
 void ActiveSetSolver::Memory::check_constant(const SplineProblem& problem, const FacePoint& point) {
   const Vec3 y = problem.knots[std::size_t(point.knot)] * point.map;
   for (int i = point.begin; i < point.end; ++i) {
-    const Face& face = problem.faces[std::size_t(i)];
-    if (!(face.normal.dot(y) <= face.offset)) constant_violated = true;
+    const HalfSpace& face = problem.faces[std::size_t(i)];
+    if (!(face.normal.dot(y) <= face.offset_m)) constant_violated = true;
   }
 }
 

@@ -20,34 +20,32 @@ std::optional<Flight> smoothest(const Task& task, double duration_s, const Plan&
     plan.stretch(factor);
     plan.braking_s *= factor;
     if (!solve_fixed(task, plan)) return {};
-    return judge(task.request, plan).flight;
+    return judge(task, plan).flight;
   };
   if (auto flight = attempt(soonest)) return flight;
   for (const Lead& lead : kLeads) {
-    if (task.request.rests() || task.effort.stopped()) break;
-    if (auto flight = attempt(cut_trapezoid(task.request, task.config, lead))) return flight;
+    if (from_rest_to_rest(task.request) || task.effort.stopped()) break;
+    if (auto flight = attempt(cut_trapezoid(task.request, task.corridor, task.config, lead))) return flight;
   }
   return {};
 }
 
 // Slower along the same curve: always possible between rests.
-Result<Flight> slower(const Request& request, double factor, Flight flight) {
-  for (BezierPiece& piece : flight.trajectory.pieces) piece.duration_s *= factor;
-  flight.certificate = certify(flight.trajectory, request.corridor.polytopes, request.limits,
-                               request.start, request.goal);
-  if (!flight.certificate.holds()) {
-    return fail(ErrorCode::not_certified,
-                fmt::format("the flight slowed by {:.3g} is not certified: {}", factor,
-                            flight.certificate.worst()));
-  }
-  flight.jerk_cost = flight.trajectory.jerk_cost();
+Result<Flight> slower(const Task& task, double factor, Flight flight) {
+  Trajectory trajectory = flight.certified.trajectory();
+  for (BezierPiece& piece : trajectory.pieces) piece.duration_s *= factor;
+  flight.jerk_cost = trajectory.jerk_cost();
+  auto certified = certify(std::move(trajectory), task.corridor.polytopes, task.request.limits,
+                           task.request.start, task.request.goal);
+  if (!certified) return certified.error();
+  flight.certified = *std::move(certified);
   return flight;
 }
 
 }  // namespace
 
 Result<Flight> arrive_after(const Task& task, double duration_s, Flight soonest) {
-  const double least_s = soonest.trajectory.duration_s();
+  const double least_s = soonest.certified.duration_s();
   if (duration_s < least_s * (1.0 - kRounding)) {
     return fail(ErrorCode::trajectory_infeasible,
                 fmt::format("a flight of {:.4g} s is too short: the soonest found takes {:.4g} s; "
@@ -58,7 +56,7 @@ Result<Flight> arrive_after(const Task& task, double duration_s, Flight soonest)
   if (task.effort.stopped()) return no_flight(task);
   const double factor = duration_s / least_s;
   if (factor <= 1.0 + kRounding) return soonest;
-  if (task.request.rests()) return slower(task.request, factor, std::move(soonest));
+  if (from_rest_to_rest(task.request)) return slower(task, factor, std::move(soonest));
   return fail(ErrorCode::trajectory_infeasible,
               fmt::format("found no flight of {:.4g} s from or to a moving end; the soonest takes "
                           "{:.4g} s: ask for another duration",

@@ -5,7 +5,7 @@
 namespace goshawk::trajectory_optimizer {
 
 std::optional<Flight> fixed_durations(const Task& task) {
-  return stretched(task, cut_trapezoid(task.request, task.config));
+  return stretched(task, cut_trapezoid(task.request, task.corridor, task.config));
 }
 
 std::optional<Flight> stretched(const Task& task, const Plan& plan) {
@@ -17,7 +17,7 @@ std::optional<Flight> stretched(const Task& task, const Plan& plan) {
     Plan longer = plan;
     longer.stretch(factor);
     if (solve_fixed(task, longer)) {
-      if (auto flight = judge(task.request, longer).flight) return flight;
+      if (auto flight = judge(task, longer).flight) return flight;
     }
     if (task.effort.stopped()) break;
     factor *= 1.0 + step;

@@ -2,21 +2,15 @@
 
 #include <optional>
 
-#include "goshawk/core/certificate.hpp"
-#include "goshawk/trajectory_optimizer/plan.hpp"
+#include "goshawk/core/certified_trajectory.hpp"
+#include "goshawk/trajectory_optimizer/task.hpp"
 
 namespace goshawk::trajectory_optimizer {
 
-/// The squared duration beside the mean squared jerk, each in units of the trapezoid's: enough for
-/// nearly the least time, not so much that the jerk is left to chance.
-inline constexpr double kTimeWeight = 300.0;
-inline constexpr double kCoarseTimeWeight = 100.0;  // of the solves before the last
-
-/// A plan whose trajectory holds its certificate.
+/// A plan whose trajectory is certified for the request.
 struct Flight {
   Plan plan;
-  Trajectory trajectory;
-  Certificate certificate;
+  CertifiedTrajectory certified;
   double jerk_cost = 0.0;  // [m^2/s^5]
   double cost = 0.0;       // kTimeWeight * squared duration + mean squared jerk, in natural units
 };
@@ -26,7 +20,7 @@ struct Judged {
   bool outside = false;          // a control point leaves its polytope
 };
 
-/// Writes a plan down as a trajectory and certifies it for the request.
-Judged judge(const Request& request, const Plan& plan);
+/// Writes a plan down as a trajectory and certifies it for the task's request.
+Judged judge(const Task& task, const Plan& plan);
 
 }  // namespace goshawk::trajectory_optimizer

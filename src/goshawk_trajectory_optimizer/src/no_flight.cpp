@@ -14,7 +14,7 @@ Error no_flight(const Task& task) {
     return fail(ErrorCode::deadline_exceeded,
                 "the deadline passed before a trajectory was found: allow more time" + numbers);
   }
-  if (!task.request.rests() && effort.last.status != Status::numerical_trouble) {
+  if (!from_rest_to_rest(task.request) && effort.last.status != Status::numerical_trouble) {
     return fail(ErrorCode::start_infeasible,
                 fmt::format("no trajectory from {:.3g} m/s stays in the corridor and within the "
                             "limits: replan from farther ahead, widen the corridor or raise the "

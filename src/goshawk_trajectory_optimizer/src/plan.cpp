@@ -30,22 +30,23 @@ double path_length(const std::vector<Vec3>& waypoints) {
 
 }  // namespace
 
-bool Request::rests() const {
-  return !is_moving(start) && !is_moving(goal);
+bool from_rest_to_rest(const PlanRequest& request) {
+  return !is_moving(request.start) && !is_moving(request.goal);
 }
 
 double Plan::duration_s() const {
   return std::accumulate(durations_s.begin(), durations_s.end(), 0.0);
 }
 
-Plan cut_trapezoid(const Request& request, const Config& config, const Lead& lead) {
-  const auto& waypoints = request.corridor.waypoints_map;
+Plan cut_trapezoid(const PlanRequest& request, const Corridor& corridor, const Config& config,
+                   const Lead& lead) {
+  const auto& waypoints = corridor.waypoints_map;
   const std::size_t n = waypoints.size() - 1;
   const TimeProfile profile(waypoints, request.limits,
                             speed_along(request.start, waypoints[0], waypoints[1]),
                             speed_along(request.goal, waypoints[n - 1], waypoints[n]));
   Plan plan;
-  plan.stays = request.rests() && path_length(waypoints) <= kLeastLength;
+  plan.stays = from_rest_to_rest(request) && path_length(waypoints) <= kLeastLength;
   plan.reference_s = plan.stays ? config.piece_duration_s : profile.duration_s();
   plan.reference_s = std::max(
       plan.reference_s,
@@ -70,84 +71,6 @@ Plan cut_trapezoid(const Request& request, const Config& config, const Lead& lea
   return plan;
 }
 
-namespace {
-
-Knot to_units(const FlatState& state, const Units& units) {
-  Knot knot;
-  knot.col(0) = (state.position - units.origin_map) / units.length_m;
-  knot.col(1) = state.velocity * (units.time_s / units.length_m);
-  knot.col(2) = state.acceleration * (units.time_s * units.time_s / units.length_m);
-  return knot;
-}
-
-// Adds the faces that control point j of piece k must stay behind.
-class FaceWriter {
- public:
-  FaceWriter(const Request& request, const Plan& plan, const Units& units, double reach_m,
-             SplineProblem& problem)
-      : request_(request), plan_(plan), units_(units), reach_m_(reach_m), problem_(problem) {}
-
-  // @return false where the point is constant and outside
-  bool add(int piece, int j) {
-    const int knot = j < 3 ? piece : piece + 1;
-    const PointMap map = position_point(j, problem_.durations[std::size_t(piece)]);
-    const Polytope& polytope =
-        request_.corridor.polytopes[std::size_t(plan_.polytopes[std::size_t(piece)])];
-    const Vec3 coefficients = j < 3 ? map.from_first : map.from_second;
-    const bool end = knot == 0 || knot == problem_.pieces();
-    if (end) return add_at_end(knot, coefficients, polytope);
-    const int begin = int(problem_.faces.size());
-    const Vec3 near = problem_.knots[std::size_t(knot)] * coefficients;
-    for (int i = 0; i < polytope.faces(); ++i) {
-      const Vec3& normal = polytope.half_spaces[std::size_t(i)].normal;
-      const double bound = offset(polytope, i);
-      if ((bound - normal.dot(near)) * units_.length_m <= reach_m_)
-        problem_.faces.push_back({normal, bound});
-    }
-    finish(knot, coefficients, begin);
-    return true;
-  }
-
- private:
-  double offset(const Polytope& polytope, int i) const {
-    const HalfSpace& face = polytope.half_spaces[std::size_t(i)];
-    return (face.offset_m - face.normal.dot(units_.origin_map)) / units_.length_m;
-  }
-
-  void finish(int knot, const Vec3& coefficients, int begin) {
-    const int end = int(problem_.faces.size());
-    if (end > begin) problem_.face_points.push_back({knot, coefficients, begin, end});
-  }
-
-  // An end moves with the time scale only. Faces that it moves away from need no constraint.
-  bool add_at_end(int knot, const Vec3& coefficients, const Polytope& polytope) {
-    const Knot& x = problem_.knots[std::size_t(knot)];
-    const Knot& rate = knot == 0 ? problem_.start_rate : problem_.goal_rate;
-    const Vec3 y = x * coefficients;
-    const bool moves = problem_.scale && !rate.isZero(0.0);
-    const int begin = int(problem_.faces.size());
-    for (int i = 0; i < polytope.faces(); ++i) {
-      const Vec3& normal = polytope.half_spaces[std::size_t(i)].normal;
-      const double tolerance = 0.5e-6 / units_.length_m;  // half of the certificate's
-      const double bound = std::max(offset(polytope, i), normal.dot(x.col(0))) + tolerance;
-      if (!moves && normal.dot(y) > bound) return false;
-      const bool departs = coefficients[1] * normal.dot(x.col(1)) <= 0.0 &&
-                           coefficients[2] * normal.dot(x.col(2)) <= 0.0;
-      if (moves && !departs) problem_.faces.push_back({normal, bound});
-    }
-    finish(knot, coefficients, begin);
-    return true;
-  }
-
-  const Request& request_;
-  const Plan& plan_;
-  const Units& units_;
-  const double reach_m_;
-  SplineProblem& problem_;
-};
-
-}  // namespace
-
 double corner_reach_m(const Plan& plan, const Limits& limits) {
   const double v = limits.v_max_m_s;
   return kCorner * std::min(v * v / limits.a_max_m_s2, 0.5 * v * plan.reference_s);
@@ -156,100 +79,6 @@ double corner_reach_m(const Plan& plan, const Limits& limits) {
 double natural_jerk(const Plan& plan, const Limits& limits) {
   const double ramp_s = std::min(limits.v_max_m_s / limits.a_max_m_s2, 0.5 * plan.reference_s);
   return limits.a_max_m_s2 / ramp_s;
-}
-
-namespace {
-
-double over_vertical(double limit, double vertical) {
-  return vertical > 0.0 ? limit / vertical : 1.0;
-}
-
-// Pieces that begin while a start above a limit is braked may be as fast as it.
-void allow_for_start(const Request& request, const Plan& plan, SplineProblem& problem) {
-  const StartAllowance allowance = StartAllowance::of(request.start, request.limits);
-  double begin = 0.0;
-  for (std::size_t k = 0; k < plan.durations_s.size(); ++k) {
-    if (begin >= std::min(plan.braking_s, allowance.until_s)) break;
-    problem.v_max[k] *= allowance.speed;
-    problem.a_max[k] *= allowance.acceleration;
-    begin += plan.durations_s[k];
-  }
-}
-
-}  // namespace
-
-bool make_problem(const Request& request, const Plan& plan, bool scale, double time_weight,
-                  double reach_m, SplineProblem& problem, Units& units, double end_slack) {
-  const std::size_t m = plan.durations_s.size();
-  const Limits& limits = request.limits;
-  units.origin_map = request.start.position;
-  units.time_s = plan.duration_s() / double(m);
-  units.length_m = limits.v_max_m_s * units.time_s;
-  const double tighten = 1.0 - 1e-9;  // rounding must not cost the certificate
-
-  problem.clear();
-  problem.scale = scale;
-  problem.norm = limits.norm;
-  problem.time_weight = 1.0;
-  // Mean squared jerk in natural units; the problem has one half before it.
-  const double jerk_unit = units.length_m / std::pow(units.time_s, 3);
-  problem.jerk_weight =
-      2.0 * std::pow(jerk_unit / natural_jerk(plan, limits), 2) / double(m) / time_weight;
-  for (const double duration : plan.durations_s) {
-    problem.durations.push_back(duration / units.time_s);
-  }
-  problem.v_max.assign(m, tighten);
-  problem.a_max.assign(m, tighten * limits.a_max_m_s2 * units.time_s / limits.v_max_m_s);
-  if (limits.j_max_m_s3 > 0.0) {
-    problem.j_max.assign(
-        m, tighten * limits.j_max_m_s3 * units.time_s * units.time_s / limits.v_max_m_s);
-  }
-  problem.v_over_vertical = over_vertical(limits.v_max_m_s, limits.v_max_vertical_m_s);
-  problem.a_over_vertical = over_vertical(limits.a_max_m_s2, limits.a_max_vertical_m_s2);
-  for (std::size_t k = 0; k < m; ++k) problem.a_max[k] *= plan.a_factor(k);
-  allow_for_start(request, plan, problem);
-  // A start or goal may lie on a limit: half of the certificate's tolerance gives it an interior.
-  const auto loosen = [&](std::size_t piece) {
-    problem.v_max[piece] += 0.5e-6 / limits.v_max_m_s + end_slack;
-    problem.a_max[piece] += 0.5e-6 * units.time_s / limits.v_max_m_s;
-  };
-  if (is_moving(request.start)) loosen(0);
-  if (is_moving(request.goal)) loosen(m - 1);
-  for (const FlatState& knot : plan.knots) problem.knots.push_back(to_units(knot, units));
-  if (scale) {  // v' = v sqrt(eta), a' = a eta
-    const auto rate = [](const Knot& x) {
-      Knot r = Knot::Zero();
-      r.col(1) = 0.5 * x.col(1);
-      r.col(2) = x.col(2);
-      return r;
-    };
-    problem.start_rate = rate(problem.knots.front());
-    problem.goal_rate = rate(problem.knots.back());
-  }
-  FaceWriter faces(request, plan, units, reach_m, problem);
-  bool inside = true;
-  for (int k = 0; k < int(m); ++k) {
-    const bool enters =
-        k > 0 && plan.polytopes[std::size_t(k)] != plan.polytopes[std::size_t(k) - 1];
-    for (int j = enters ? 0 : 1; j <= (k + 1 < int(m) ? 5 : 4); ++j) {
-      inside = faces.add(k, j) && inside;
-    }
-  }
-  return inside;
-}
-
-void take_solution(const Request& request, const std::vector<Knot>& knots, const Units& units,
-                   double kappa, Plan& plan) {
-  const double time = units.time_s * kappa;
-  for (double& duration : plan.durations_s) duration *= kappa;
-  for (std::size_t k = 1; k + 1 < knots.size(); ++k) {
-    FlatState& state = plan.knots[k];
-    state.position = units.origin_map + units.length_m * knots[k].col(0);
-    state.velocity = (units.length_m / time) * knots[k].col(1);
-    state.acceleration = (units.length_m / (time * time)) * knots[k].col(2);
-  }
-  plan.knots.front() = request.start;
-  plan.knots.back() = request.goal;
 }
 
 Trajectory make_trajectory(const Plan& plan) {

@@ -14,9 +14,9 @@ constexpr double kLeastOverlap = 1e-5;  // [m] less is no room to change the pol
 constexpr double kMostExcess = 5.0;     // of a limit: beyond, the start is a mistake
 constexpr double kLeastLimit = 1e-3;
 constexpr double kMostLimit = 1e6;
+constexpr double kLongest_s = 1e6;  // of a given duration
 
 Status check_limits(const Limits& limits) {
-  if (auto status = limits.check(); !status) return status;
   for (const double limit : {limits.v_max_m_s, limits.a_max_m_s2, limits.j_max_m_s3,
                              limits.v_max_vertical_m_s, limits.a_max_vertical_m_s2}) {
     if (limit == 0.0 || (limit >= kLeastLimit && limit <= kMostLimit)) continue;
@@ -74,6 +74,14 @@ Status check_overlaps(const Corridor& corridor) {
                           radius));
 }
 
+Status check_duration(double duration_s) {
+  if (duration_s <= kLongest_s) return success();
+  return fail(ErrorCode::invalid_input,
+              fmt::format("a duration of {:.4g} s is out of range: ask for up to {:g} s, or for 0 to "
+                          "arrive as soon as the limits allow",
+                          duration_s, kLongest_s));
+}
+
 struct End {
   std::string_view name;
   ErrorCode code;  // of a state that does not fit
@@ -92,9 +100,6 @@ Status check_usage(const End& end, std::string_view what, double usage, double l
 
 Status check_end(const End& end, const Limits& limits) {
   const FlatState& state = end.state;
-  if (!is_finite(state.position) || !is_finite(state.velocity) || !is_finite(state.acceleration)) {
-    return fail(ErrorCode::invalid_input, fmt::format("the {} state is not finite", end.name));
-  }
   if (!((state.position - end.waypoint).norm() <= kPlace)) {
     return fail(end.code, fmt::format("the {} {} is not the corridor's end {}: build the corridor "
                                       "from the same state",
@@ -111,19 +116,19 @@ Status check_end(const End& end, const Limits& limits) {
 
 }  // namespace
 
-Status check_request(const Corridor& corridor, const FlatState& start, const FlatState& goal,
-                     const Limits& limits) {
-  if (auto status = check_limits(limits); !status) return status;
+Status check_request(const PlanRequest& request, const Corridor& corridor) {
+  if (auto status = check(request); !status) return status;
+  if (auto status = check_limits(request.limits); !status) return status;
+  if (auto status = check_duration(request.duration_s); !status) return status;
   if (auto status = corridor.check(); !status) return status;
   if (auto status = check_places(corridor); !status) return status;
   if (auto status = check_overlaps(corridor); !status) return status;
   const auto& waypoints = corridor.waypoints_map;
-  if (auto status = check_end(
-          {"start", ErrorCode::start_infeasible, start, waypoints.front(), kMostExcess}, limits);
-      !status) {
-    return status;
-  }
-  return check_end({"goal", ErrorCode::invalid_input, goal, waypoints.back(), 1.0}, limits);
+  const End start{"start", ErrorCode::start_infeasible, request.start, waypoints.front(),
+                  kMostExcess};
+  const End goal{"goal", ErrorCode::invalid_input, request.goal, waypoints.back(), 1.0};
+  if (auto status = check_end(start, request.limits); !status) return status;
+  return check_end(goal, request.limits);
 }
 
 }  // namespace goshawk::trajectory_optimizer

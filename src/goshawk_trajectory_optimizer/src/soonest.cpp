@@ -26,8 +26,8 @@ constexpr double kSettled = 1e-3;  // of kappa: the linearised moving end is exa
 /// use of the limits.
 enum class Refinement { switches, balance };
 
-double end_slack(const Request& request, int pass) {
-  return request.rests() ? 0.0 : kEndSlack[std::min<std::size_t>(std::size_t(pass), 4)];
+double end_slack(const PlanRequest& request, int pass) {
+  return from_rest_to_rest(request) ? 0.0 : kEndSlack[std::min<std::size_t>(std::size_t(pass), 4)];
 }
 
 // Pieces that stay below their limits get less time.
@@ -44,7 +44,7 @@ double switch_better(const Task& task, double beyond_m, Plan& plan) {
   std::vector<double>& slopes = task.workspace.slopes;
   task.workspace.interior_point.time_slopes(slopes);
   for (double& slope : slopes) slope /= task.effort.last.eta;
-  return move_switches(task.request, task.config, slopes, beyond_m, plan);
+  return move_switches(task.request, task.corridor, task.config, slopes, beyond_m, plan);
 }
 
 // @param plan the guess; left as the last solve made it
@@ -81,19 +81,19 @@ std::optional<Flight> fine_passes(const Task& task, int first_pass, int end_pass
       const auto scaled = solve_scale(task, {reach_m, false, end_slack(task.request, pass)}, plan);
       if (!scaled) return best;
       kappa = *scaled;
-      Judged judged = judge(task.request, plan);
+      Judged judged = judge(task, plan);
       outside = judged.outside && reach_m < kAllFaces;
       if (outside) reach_m = reach_m < first_reach_m ? first_reach_m : kAllFaces;
       keep(best, std::move(judged.flight));
     }
-    if (best && (task.request.rests() || std::abs(kappa - 1.0) < kSettled)) break;
+    if (best && (from_rest_to_rest(task.request) || std::abs(kappa - 1.0) < kSettled)) break;
   }
   return best;
 }
 
 // @param plan the guess; left as the last solve made it
 std::optional<Flight> refine(const Task& task, int coarse, Refinement refinement, Plan& plan) {
-  const int fine = task.request.rests() ? 1 : kMovingFinePasses;
+  const int fine = from_rest_to_rest(task.request) ? 1 : kMovingFinePasses;
   const double first_reach_m = corner_reach_m(plan, task.request.limits);
   const auto passes = coarse_passes(task, coarse, refinement, first_reach_m, plan);
   if (!passes) return {};
@@ -132,7 +132,7 @@ std::optional<Flight> soonest_moving(const Task& task) {
   std::optional<Flight> flight;
   const auto attempt = [&](Lead lead, double braking, Refinement refinement) {
     lead.braking = braking;
-    plan = cut_trapezoid(task.request, task.config, lead);
+    plan = cut_trapezoid(task.request, task.corridor, task.config, lead);
     flight = refine(task, passes, refinement, plan);
     return flight || task.effort.stopped();
   };
@@ -151,7 +151,7 @@ std::optional<Flight> soonest_moving(const Task& task) {
 
 std::optional<Flight> fastest(const Task& task) {
   task.effort.last = {};
-  return task.config.method == "fixed" ? fixed_durations(task) : soonest(task);
+  return task.config.method == Method::fixed ? fixed_durations(task) : soonest(task);
 }
 
 std::optional<Flight> soonest_with_cut(const Task& task, Plan plan) {
@@ -159,9 +159,9 @@ std::optional<Flight> soonest_with_cut(const Task& task, Plan plan) {
 }
 
 std::optional<Flight> soonest(const Task& task) {
-  const Plan trapezoid = cut_trapezoid(task.request, task.config);
+  const Plan trapezoid = cut_trapezoid(task.request, task.corridor, task.config);
   if (trapezoid.stays) return fixed_durations(task);
-  return task.request.rests() ? soonest_from_rest(task, trapezoid) : soonest_moving(task);
+  return from_rest_to_rest(task.request) ? soonest_from_rest(task, trapezoid) : soonest_moving(task);
 }
 
 }  // namespace goshawk::trajectory_optimizer

@@ -70,7 +70,7 @@ void SplineSolver::Memory::load_faces(const SplineProblem& problem) {
   ranges_.clear();
   planes_.clear();
   faces_.clear();
-  std::span<const Face> last;
+  std::span<const HalfSpace> last;
   for (const FacePoint& point : problem.face_points) {
     const std::span faces(problem.faces.data() + point.begin, problem.faces.data() + point.end);
     // The points of a piece mostly have the faces of one polytope.
@@ -92,17 +92,17 @@ void SplineSolver::Memory::load_faces(const SplineProblem& problem) {
   state.faces = faces_.data();
 }
 
-void SplineSolver::Memory::load_planes(std::span<const Face> faces) {
+void SplineSolver::Memory::load_planes(std::span<const HalfSpace> faces) {
   for (std::size_t i = 0; i < faces.size(); i += 4) {
     FourFaces& planes = planes_.emplace_back();
     planes.nx = planes.ny = planes.nz = Lanes{};
     planes.offset = Lanes{1.0, 1.0, 1.0, 1.0};  // fills up: no normal, always satisfied
     for (std::size_t j = 0; j < 4 && i + j < faces.size(); ++j) {
-      const Face& face = faces[i + j];
+      const HalfSpace& face = faces[i + j];
       planes.nx[j] = face.normal[0];
       planes.ny[j] = face.normal[1];
       planes.nz[j] = face.normal[2];
-      planes.offset[j] = face.offset;
+      planes.offset[j] = face.offset_m;
     }
   }
 }

@@ -24,7 +24,7 @@ struct SplineSolver::Memory {
   void smooth_guess();
   void load_knots(const SplineProblem& problem);
   void load_faces(const SplineProblem& problem);
-  void load_planes(std::span<const Face> faces);
+  void load_planes(std::span<const HalfSpace> faces);
   void load_limits(const SplineProblem& problem);
   void load_limit(const SplineProblem& problem, int k, int order, LimitLanes& to);
   bool is_row(const PointMap& map, int k, double limit, const LimitSet& set);

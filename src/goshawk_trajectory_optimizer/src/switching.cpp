@@ -50,9 +50,9 @@ double reach_s(const Curve& curve, const Polytope& polytope, double from_s, doub
 
 }  // namespace
 
-double move_switches(const Request& request, const Config& config, std::span<const double> slopes,
-                     double beyond_m, Plan& plan) {
-  const auto& polytopes = request.corridor.polytopes;
+double move_switches(const PlanRequest& request, const Corridor& corridor, const Config& config,
+                     std::span<const double> slopes, double beyond_m, Plan& plan) {
+  const auto& polytopes = corridor.polytopes;
   const std::size_t n = polytopes.size();
   const Curve curve(plan);
   const double total_s = curve.duration_s();

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "flight.hpp"
 #include "goshawk/trajectory_optimizer/limit_usage.hpp"
 
 namespace goshawk::trajectory_optimizer {
@@ -19,9 +18,9 @@ constexpr double kFineLimits = 1e-3;
 
 SplineSolver::Settings accuracy(const Task& task, bool coarse) {
   SplineSolver::Settings settings = coarse ? kCoarse : kFine;
-  if (task.request.rests()) settings.limit_feasibility = coarse ? kCoarseLimits : kFineLimits;
+  if (from_rest_to_rest(task.request)) settings.limit_feasibility = coarse ? kCoarseLimits : kFineLimits;
   settings.max_iterations = task.config.max_iterations;
-  settings.stop = task.request.out_of_time;
+  settings.stop = task.out_of_time;
   return settings;
 }
 
@@ -40,12 +39,12 @@ bool solve_fixed(const Task& task, Plan& plan) {
   ++task.effort.solves;
   last = {};
   Units units;
-  if (!make_problem(task.request, plan, false, 1.0, kAllFaces, w.problem, units)) {
+  if (!make_problem(task.request, task.corridor, plan, {.scale = false}, w.problem, units)) {
     last.status = SplineSolver::Status::infeasible;
     return false;
   }
   const SplineSolver::Settings settings{task.config.max_iterations, 1e-7, 1e-9, 1e-9, 1e-6,
-                                        task.request.out_of_time};
+                                        task.out_of_time};
   bool decided = false;
   if (ActiveSetSolver::suits(w.problem)) {
     run(w.active_set, settings, task);
@@ -60,12 +59,12 @@ bool solve_fixed(const Task& task, Plan& plan) {
 
 std::optional<double> solve_scale(const Task& task, const ScaleSettings& settings, Plan& plan) {
   Workspace& w = task.workspace;
-  const double time_weight = settings.coarse ? kCoarseTimeWeight : kTimeWeight;
+  const ProblemSettings of_problem{.scale = true,
+                                   .time_weight = settings.coarse ? kCoarseTimeWeight : kTimeWeight,
+                                   .reach_m = settings.reach_m,
+                                   .end_slack = settings.end_slack};
   Units units;
-  if (!make_problem(task.request, plan, true, time_weight, settings.reach_m, w.problem, units,
-                    settings.end_slack)) {
-    return {};
-  }
+  if (!make_problem(task.request, task.corridor, plan, of_problem, w.problem, units)) return {};
   run(w.interior_point, accuracy(task, settings.coarse), task);
   ++task.effort.solves;
   const SplineSolver::Outcome& last = task.effort.last;
@@ -73,7 +72,7 @@ std::optional<double> solve_scale(const Task& task, const ScaleSettings& setting
   const double kappa = std::sqrt(last.eta);
   take_solution(task.request, w.interior_point.knots(), units, kappa, plan);
   // Exact: the shape is feasible at any longer duration.
-  if (task.request.rests()) slow_to_limits(task.request.limits, 0.0, plan);
+  if (from_rest_to_rest(task.request)) slow_to_limits(task.request.limits, 0.0, plan);
   return kappa;
 }
 

@@ -1,30 +1,19 @@
 #include "goshawk/trajectory_optimizer/trajectory_optimizer.hpp"
 
-#include <fmt/format.h>
-
 #include <utility>
 
 #include "goshawk/trajectory_optimizer/request_check.hpp"
+#include "goshawk/trajectory_optimizer/yaw.hpp"
 #include "strategies.hpp"
 
 namespace goshawk::trajectory_optimizer {
 namespace {
 
-constexpr double kLongest_s = 1e6;
-
-Status check_duration(double duration_s) {
-  if (duration_s >= 0.0 && duration_s <= kLongest_s) return success();
-  return fail(ErrorCode::invalid_input,
-              fmt::format("a duration of {} s is out of range: ask for up to 1e6 s, or for 0 to "
-                          "arrive as soon as the limits allow",
-                          duration_s));
-}
-
 // When to arrive; nothing: as soon as the limits allow.
 std::optional<double> arrival_s(const Task& task, const Flight& soonest) {
   if (task.request.duration_s > 0.0) return task.request.duration_s;
   const double extra = task.config.extra_time;
-  if (extra > 0.0) return (1.0 + extra) * soonest.trajectory.duration_s();
+  if (extra > 0.0) return (1.0 + extra) * soonest.certified.duration_s();
   return {};
 }
 
@@ -61,26 +50,19 @@ Status TrajectoryOptimizer::reconfigure(const Config& config) {
   return success();
 }
 
-Result<Solution> TrajectoryOptimizer::optimise(const Corridor& corridor, const FlatState& start,
-                                               const FlatState& goal, const Limits& limits,
-                                               const Query& query) {
-  if (auto status = check_request(corridor, start, goal, limits); !status) return status.error();
-  if (auto status = check_duration(query.duration_s); !status) return status.error();
-  const Request request{corridor, start, goal, limits, query.duration_s, &query.out_of_time};
+Result<Solution> TrajectoryOptimizer::optimise(const PlanRequest& request, const Corridor& corridor,
+                                               const std::function<bool()>& out_of_time) {
+  if (auto status = check_request(request, corridor); !status) return status.error();
   Effort effort;
-  auto flight = answer({request, config_, *workspace_, effort});
+  auto flight = answer({request, corridor, config_, *workspace_, effort, &out_of_time});
   if (!flight) return flight.error();
-  const int pieces = int(flight->trajectory.pieces.size());
-  return Solution{std::move(flight->trajectory),
-                  flight->certificate,
-                  effort.iterations,
-                  effort.solves,
-                  pieces,
-                  flight->jerk_cost};
+  auto yaw = plan_yaw(flight->certified.trajectory(), request, config_);
+  return Solution{std::move(flight->certified), std::move(yaw), flight->jerk_cost,
+                  effort.iterations, effort.solves};
 }
 
 std::string_view TrajectoryOptimizer::implementation() const {
-  return config_.method == "fixed" ? "bezier-fixed" : "bezier-scale";
+  return config_.method == Method::fixed ? "bezier-fixed" : "bezier-scale";
 }
 
 }  // namespace goshawk::trajectory_optimizer

@@ -13,7 +13,7 @@ constexpr int kMostSlowings = 8;
 constexpr double kLeastOfLimit = 1e-3;  // of the acceleration limit
 
 bool respects(const Flight& flight, const FlatnessLimits& vehicle) {
-  return respects(flatness_of(flight.trajectory), vehicle);
+  return respects(flatness_of(flight.certified.trajectory()), vehicle);
 }
 
 // The pieces that ask too much get this share of the acceleration limit, until none does.
@@ -36,15 +36,16 @@ std::optional<Flight> slow_where_needed(const Task& task, const FlatnessLimits& 
 // With this share of the acceleration limit from start to goal.
 std::optional<Flight> slow_everywhere(const Task& task, const FlatnessLimits& vehicle,
                                       double share) {
-  Limits limits = task.request.limits;
-  limits.a_max_m_s2 *= share;
-  limits.a_max_vertical_m_s2 *= share;
-  const Request careful{task.request.corridor,   task.request.start,      task.request.goal, limits,
-                        task.request.duration_s, task.request.out_of_time};
-  auto flight = fastest({careful, task.config, task.workspace, task.effort});
+  PlanRequest careful = task.request;
+  careful.limits.a_max_m_s2 *= share;
+  careful.limits.a_max_vertical_m_s2 *= share;
+  auto flight = fastest({careful, task.corridor, task.config, task.workspace, task.effort,
+                         task.out_of_time});
   if (!flight || !respects(*flight, vehicle)) return {};
-  flight->certificate = certify(flight->trajectory, task.request.corridor.polytopes,
-                                task.request.limits, task.request.start, task.request.goal);
+  auto certified = certify(flight->certified.trajectory(), task.corridor.polytopes,
+                           task.request.limits, task.request.start, task.request.goal);
+  if (!certified) return {};
+  flight->certified = *std::move(certified);
   return flight;
 }
 
@@ -62,8 +63,8 @@ Result<Flight> within_vehicle(const Task& task, Flight flight) {
   if (share > kLeastOfLimit) {
     auto here = slow_where_needed(task, vehicle, std::min(1.0, share), flight);
     auto everywhere = slow_everywhere(task, vehicle, std::min(1.0, share));
-    const bool simpler = everywhere && (!here || everywhere->trajectory.duration_s() <
-                                                     here->trajectory.duration_s());
+    const bool simpler = everywhere && (!here || everywhere->certified.duration_s() <
+                                                     here->certified.duration_s());
     if (simpler) return *std::move(everywhere);
     if (here) return *std::move(here);
   }

@@ -44,8 +44,8 @@ double violation(const SplineProblem& problem, const std::vector<Knot>& knots) {
   for (const FacePoint& point : problem.face_points) {
     const Vec3 y = knots[std::size_t(point.knot)] * point.map;
     for (int i = point.begin; i < point.end; ++i) {
-      const Face& face = problem.faces[std::size_t(i)];
-      worst = std::max(worst, face.normal.dot(y) - face.offset);
+      const HalfSpace& face = problem.faces[std::size_t(i)];
+      worst = std::max(worst, face.normal.dot(y) - face.offset_m);
     }
   }
   for (std::size_t k = 0; k < problem.durations.size(); ++k) {
@@ -133,8 +133,8 @@ TEST(ActiveSetSolver, ThousandsOfCopiesOfFacesChangeNothing) {
       const int begin = int(many.faces.size());
       for (int copy = 0; copy < 50; ++copy) {
         for (int i = point.begin; i < point.end; ++i) {
-          Face face = instance.problem.faces[std::size_t(i)];
-          if (copy % 3 == 1) face.offset += 1e-3 * copy;  // behind, parallel
+          HalfSpace face = instance.problem.faces[std::size_t(i)];
+          if (copy % 3 == 1) face.offset_m += 1e-3 * copy;  // behind, parallel
           many.faces.push_back(face);
         }
       }

@@ -101,9 +101,9 @@ Status Planner::run(const FlatState& start, const std::vector<Vec3>& goals_map,
                             [&] { return builder_.build(*grid_, plan.path->waypoints_map, &raw); });
   if (!corridor) return corridor.error();
   plan.corridor = *std::move(corridor);
-  auto solution =
-      run_stage(plan, "trajectory_optimizer", std::string(optimizer_.implementation()),
-                [&] { return optimizer_.optimise(*plan.corridor, plan.start, plan.goal, limits); });
+  const PlanRequest request{.start = plan.start, .goal = plan.goal, .limits = limits};
+  auto solution = run_stage(plan, "trajectory_optimizer", std::string(optimizer_.implementation()),
+                            [&] { return optimizer_.optimise(request, *plan.corridor); });
   if (!solution) return solution.error();
   plan.solution = *std::move(solution);
   return success();

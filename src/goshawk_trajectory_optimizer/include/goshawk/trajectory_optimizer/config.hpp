@@ -1,15 +1,30 @@
 #pragma once
 
 #include <concepts>
-#include <string>
 #include <type_traits>
 
 #include "goshawk/core/parameter.hpp"
 
 namespace goshawk::trajectory_optimizer {
 
+/// What a flight is optimised for.
+enum class Method { scale, fixed };
+constexpr auto words_of(Method) {
+  return std::to_array<Named<Method>>({{Method::scale, "scale"}, {Method::fixed, "fixed"}});
+}
+
+/// Where the vehicle looks. none: the optimizer does not say.
+enum class YawMode { none, fixed, along_motion, towards_point };
+constexpr auto words_of(YawMode) {
+  using enum YawMode;
+  return std::to_array<Named<YawMode>>({{none, "none"},
+                                        {fixed, "fixed"},
+                                        {along_motion, "along_motion"},
+                                        {towards_point, "towards_point"}});
+}
+
 struct Config {
-  std::string method = "scale";
+  Method method = Method::scale;
   double piece_duration_s = 0.45;  // [s]
   int min_pieces = 8;
   int refinement_passes = 2;
@@ -19,7 +34,7 @@ struct Config {
   double max_thrust_m_s2 = 0.0;  // [m/s^2] over the mass
   double min_thrust_m_s2 = 0.0;  // [m/s^2] over the mass
   double max_tilt_rad = 0.0;     // [rad]
-  std::string yaw = "none";
+  YawMode yaw = YawMode::none;
   double yaw_rate_max_rad_s = 0.8;  // [rad/s]
   double yaw_point_x_m = 0.0;       // [m]
   double yaw_point_y_m = 0.0;       // [m]
@@ -31,7 +46,7 @@ void describe(Self& c, Visitor&& visit) {
   visit("method", c.method, "",
         "scale: durations and shape together, near time-optimal; fixed: minimum jerk with the "
         "durations of a trapezoid over the whole path, stretched until feasible",
-        AtRunTime{OneOf{{"scale", "fixed"}}});
+        AtRunTime{Anything{}});
   visit("piece_duration_s", c.piece_duration_s, "s",
         "longest piece of the first cut: shorter pieces fly faster and take longer to compute",
         AtRunTime{Range{0.02, 100.0}});
@@ -66,7 +81,7 @@ void describe(Self& c, Visitor&& visit) {
   visit("yaw", c.yaw, "",
         "where to look: none (leave it to the tracker), fixed (the request's goal yaw), "
         "along_motion or towards_point",
-        AtRunTime{OneOf{{"none", "fixed", "along_motion", "towards_point"}}});
+        AtRunTime{Anything{}});
   visit("yaw_rate_max_rad_s", c.yaw_rate_max_rad_s, "rad/s",
         "yaw rate limit; keep it below the tracker's max_yaw_rate_rad_s",
         AtRunTime{Range::positive(100.0)});

@@ -2,18 +2,11 @@
 
 #include <vector>
 
-#include "goshawk/core/certificate.hpp"
+#include "goshawk/core/half_space.hpp"
+#include "goshawk/core/limits.hpp"
 #include "goshawk/trajectory_optimizer/knot.hpp"
 
 namespace goshawk::trajectory_optimizer {
-
-/// normal . y <= offset
-struct Face {
-  Vec3 normal;
-  double offset = 0.0;
-
-  bool operator==(const Face&) const = default;
-};
 
 /// A control point of a piece, a map of one knot alone, with the faces it must stay behind:
 /// faces[begin] .. faces[end - 1].
@@ -52,7 +45,7 @@ struct SplineProblem {
   Knot start_rate = Knot::Zero();
   Knot goal_rate = Knot::Zero();
   std::vector<FacePoint> face_points;  // of points that are not constant
-  std::vector<Face> faces;
+  std::vector<HalfSpace> faces;        // in the problem's unit of length
 
   int pieces() const { return int(durations.size()); }
   /// Keeps the capacity of every vector.

@@ -1,11 +1,12 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <vector>
 
 #include "goshawk/trajectory_optimizer/active_set_solver.hpp"
 #include "goshawk/trajectory_optimizer/config.hpp"
-#include "goshawk/trajectory_optimizer/plan.hpp"
+#include "goshawk/trajectory_optimizer/plan_problem.hpp"
 #include "goshawk/trajectory_optimizer/spline_solver.hpp"
 
 namespace goshawk::trajectory_optimizer {
@@ -29,11 +30,18 @@ struct Effort {
 
 /// One request while it is being answered: what every strategy works with.
 struct Task {
-  const Request& request;
+  const PlanRequest& request;
+  const Corridor& corridor;
   const Config& config;
   Workspace& workspace;
   Effort& effort;
+  const std::function<bool()>* out_of_time = nullptr;  // asked before each iteration; null: never
 };
+
+/// The squared duration beside the mean squared jerk, each in units of the trapezoid's: enough for
+/// nearly the least time, not so much that the jerk is left to chance.
+inline constexpr double kTimeWeight = 300.0;
+inline constexpr double kCoarseTimeWeight = 100.0;  // of the solves before the last
 
 /// Least jerk with the durations of a plan, all faces included.
 /// @param plan its knots become the solution's
