@@ -16,7 +16,7 @@ PLANNERS = {
     "goshawk": ("Goshawk", "tab:blue", "o"),
     "thesis": ("thesis", "tab:orange", "s"),
     "minimum_snap": ("minimum snap (Ref. 40)", "tab:green", "^"),
-    "polynomial": ("rechecked polynomial (Ref. 42)", "tab:red", "D"),
+    "minimum_jerk": ("minimum jerk (Ref. 42)", "tab:red", "D"),
 }
 
 

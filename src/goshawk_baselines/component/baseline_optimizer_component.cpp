@@ -45,34 +45,31 @@ class BaselineOptimizerComponent : public Component {
     auto [solution, compute_ns] = timed([&]() -> Result<Solution> {
       const auto corridor = conversions::from_msg(m);
       if (!corridor) return corridor.error();
-      return optimizer_.optimise(*corridor, request->start, request->goal, request->limits,
-                                 {.duration_s = request->duration_s, .out_of_time = [&] {
-                                    return !conversions::check_deadline(*request, node_.now_ns());
-                                  }});
+      return optimizer_.optimise(*request, *corridor,
+                                 [&] { return !check_deadline(*request, node_.now_ns()); });
     });
     timing.compute_ns = compute_ns;
     if (!solution) return reporter_.failed(request->id, solution.error(), timing);
-    if (auto status = publish(m, *solution, compute_ns); !status) {
-      return reporter_.failed(request->id, status.error(), timing);
-    }
+    publish(m, *solution, compute_ns);
+    const Trajectory& trajectory = solution->trajectory();
     reporter_.answered(request->id, timing,
-                       {{"pieces", double(solution->trajectory.pieces.size())},
-                        {"duration_s", solution->trajectory.duration_s()},
-                        {"length_m", solution->trajectory.length_m()},
+                       {{"pieces", double(trajectory.pieces.size())},
+                        {"duration_s", trajectory.duration_s()},
+                        {"length_m", trajectory.length_m()},
                         {"jerk_cost", solution->jerk_cost}});
   }
 
-  Status publish(const msg::Corridor& corridor, const Solution& solution, std::int64_t compute_ns) {
+  void publish(const msg::Corridor& corridor, const Solution& solution, std::int64_t compute_ns) {
     msg::BezierTrajectory m;
     m.request(corridor.request());
     m.implementation(std::string(optimizer_.implementation()));
     m.map_version(corridor.map_version());
-    m.pieces(conversions::to_msg(solution.trajectory));
+    m.pieces(conversions::to_msg(solution.trajectory()));
     m.polytopes(corridor.polytopes());
-    m.certificate(conversions::to_msg(solution.certificate));
+    m.certificate(conversions::to_msg(solution.certified.certificate()));
     m.compute_ns(compute_ns);
     m.header(conversions::make_header(node_.now_ns()));
-    return publisher_.publish(m);
+    reporter_.send(publisher_, m, corridor.request().id());
   }
 
   Node& node_;

@@ -7,8 +7,6 @@
 namespace goshawk::baselines {
 namespace {
 
-using trajectory_optimizer::Query;
-using trajectory_optimizer::Request;
 using trajectory_optimizer::Solution;
 using trajectory_optimizer::Task;
 
@@ -49,43 +47,53 @@ Status BaselineOptimizer::reconfigure(const Config& config) {
   return success();
 }
 
-Result<Trajectory> BaselineOptimizer::plan(const Task& task) const {
-  const Request& request = task.request;
-  if (config_.method == "thesis") return thesis_form(task);
-  if (config_.method == "polynomial") return polynomial(request, task.effort.solves);
+Result<Trajectory> BaselineOptimizer::plan(const Task& task) {
+  switch (config_.method) {
+    case Method::thesis:
+      return thesis_form(task);
+    case Method::minimum_jerk:
+      return minimum_jerk(task);
+    case Method::minimum_snap:
+      break;
+  }
   task.effort.solves = 1;
-  return minimum_snap(request.corridor.waypoints_map, request.start, request.goal, request.limits);
+  return minimum_snap(task.corridor.waypoints_map, task.request.start, task.request.goal,
+                      task.request.limits);
 }
 
-Result<Solution> BaselineOptimizer::optimise(const Corridor& corridor, const FlatState& start,
-                                             const FlatState& goal, const Limits& limits,
-                                             const Query& query) {
-  if (auto status = trajectory_optimizer::check_request(corridor, start, goal, limits); !status) {
+Result<Solution> BaselineOptimizer::optimise(const PlanRequest& request, const Corridor& corridor,
+                                             const std::function<bool()>& out_of_time) {
+  if (auto status = trajectory_optimizer::check_request(request, corridor); !status) {
     return status.error();
   }
-  if (query.duration_s != 0.0) {
+  if (request.duration_s != 0.0) {
     return fail(ErrorCode::invalid_input,
                 "baselines take no duration: ask for none, or use trajectory_optimizer");
   }
-  const Request request{corridor, start, goal, limits, 0.0, &query.out_of_time};
   const trajectory_optimizer::Config defaults;
   trajectory_optimizer::Effort effort;
-  auto trajectory = plan({request, defaults, workspace_, effort});
+  auto trajectory = plan({request, corridor, defaults, workspace_, effort, &out_of_time});
   if (!trajectory) return trajectory.error();
-  const Certificate certificate = certify(*trajectory, corridor.polytopes, limits, start, goal);
-  if (!certificate.holds()) {
-    return fail(ErrorCode::not_certified, "the baseline's trajectory is not certified (" +
-                                              certificate.worst() + "): use trajectory_optimizer");
-  }
-  const int pieces = int(trajectory->pieces.size());
   const double jerk_cost = trajectory->jerk_cost();
-  return Solution{*std::move(trajectory), certificate, effort.iterations,
-                  effort.solves,          pieces,      jerk_cost};
+  auto certified = certify(*std::move(trajectory), corridor.polytopes, request.limits,
+                           request.start, request.goal);
+  if (!certified) {
+    return fail(certified.code(),
+                certified.error().message + ": use trajectory_optimizer instead of a baseline");
+  }
+  return Solution{*std::move(certified), {}, jerk_cost, effort.iterations, effort.solves};
 }
 
 std::string_view BaselineOptimizer::implementation() const {
-  if (config_.method == "thesis") return "bezier-thesis";
-  return config_.method == "polynomial" ? "polynomial-rechecked" : "polynomial-minimum-snap";
+  switch (config_.method) {
+    case Method::thesis:
+      return "bezier-thesis";
+    case Method::minimum_jerk:
+      return "polynomial-minimum-jerk";
+    case Method::minimum_snap:
+      break;
+  }
+  return "polynomial-minimum-snap";
 }
 
 }  // namespace goshawk::baselines

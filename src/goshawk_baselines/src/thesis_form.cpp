@@ -26,16 +26,10 @@ Error no_trajectory(const Effort& effort) {
   }
 }
 
-bool is_certified(const Request& request, const Trajectory& trajectory) {
-  return certify(trajectory, request.corridor.polytopes, request.limits, request.start,
-                 request.goal)
-      .holds();
-}
-
 }  // namespace
 
-Plan thesis_plan(const Request& request) {
-  const auto& waypoints = request.corridor.waypoints_map;
+Plan thesis_plan(const PlanRequest& request, const Corridor& corridor) {
+  const auto& waypoints = corridor.waypoints_map;
   Plan plan;
   plan.knots.push_back(request.start);
   for (std::size_t k = 0; k + 1 < waypoints.size(); ++k) {
@@ -52,20 +46,15 @@ Plan thesis_plan(const Request& request) {
 }
 
 Result<Trajectory> thesis_form(const Task& task) {
-  const Request& request = task.request;
-  Limits per_axis = request.limits;
-  per_axis.norm = LimitNorm::per_axis;
-  const Request thesis{request.corridor, request.start,      request.goal,
-                       per_axis,         request.duration_s, request.out_of_time};
-  Plan plan = thesis_plan(thesis);
-  if (!solve_fixed({thesis, task.config, task.workspace, task.effort}, plan)) {
-    return no_trajectory(task.effort);
-  }
-  if (!is_certified(thesis, make_trajectory(plan))) {
-    return fail(ErrorCode::solver_failed, "the solver's answer does not hold its certificate");
-  }
+  const PlanRequest& request = task.request;
+  PlanRequest per_axis = request;
+  per_axis.limits.norm = LimitNorm::per_axis;
+  Plan plan = thesis_plan(per_axis, task.corridor);
+  const Task of_thesis{per_axis,       task.corridor, task.config,
+                       task.workspace, task.effort,   task.out_of_time};
+  if (!solve_fixed(of_thesis, plan)) return no_trajectory(task.effort);
   const bool other_limits = request.limits.norm != LimitNorm::per_axis;
-  if (other_limits && request.rests()) slow_to_limits(request.limits, 1.0, plan);
+  if (other_limits && from_rest_to_rest(request)) slow_to_limits(request.limits, 1.0, plan);
   return make_trajectory(plan);
 }
 

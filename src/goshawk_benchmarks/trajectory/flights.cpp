@@ -150,7 +150,7 @@ void draw_by_density(Report& report) {
 void measure_flights(Report& report) {
   Json table = Json::array({thesis_row("thesis", 10.561, 0.672, 1.286),
                             thesis_row("minimum_snap", 13.322, 0.913, 1.372),
-                            thesis_row("polynomial", 10.729, 0.821, 1.273)});
+                            thesis_row("minimum_jerk", 10.729, 0.821, 1.273)});
   std::vector<Planner> planners = planners_here(report);
   const bool quick = report.options().quick;
   const auto measure = [&](Task (*make)(double, int), double density, int runs, bool baselines) {

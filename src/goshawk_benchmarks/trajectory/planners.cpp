@@ -25,7 +25,7 @@ FlatState at_rest(const Vec3& position) {
 }  // namespace
 
 const std::vector<std::string>& Planner::names() {
-  static const std::vector<std::string> kNames{"goshawk", "thesis", "minimum_snap", "polynomial"};
+  static const std::vector<std::string> kNames{"goshawk", "thesis", "minimum_snap", "minimum_jerk"};
   return kNames;
 }
 
@@ -33,9 +33,9 @@ std::optional<Planner> Planner::make(const std::string& name) {
   Planner planner;
   planner.name_ = name;
   path_search::Config search;
-  search.planner = planner.samples()      ? path_search::Planner::rrtstar
-                   : name == "polynomial" ? path_search::Planner::astar
-                                          : path_search::Planner::jastar;
+  search.planner = planner.samples()        ? path_search::Planner::rrtstar
+                   : name == "minimum_jerk" ? path_search::Planner::astar
+                                            : path_search::Planner::jastar;
   auto made = path_search::PathSearch::create(search);
   if (!made) return std::nullopt;
   planner.search_ = *std::move(made);
@@ -44,7 +44,8 @@ std::optional<Planner> Planner::make(const std::string& name) {
   if (name == "goshawk") {
     planner.optimizer_ = trajectory_optimizer::TrajectoryOptimizer::create({}).value();
   } else {
-    planner.baseline_ = baselines::BaselineOptimizer::create({from_word<baselines::Method>(name).value()}).value();
+    planner.baseline_ =
+        baselines::BaselineOptimizer::create({from_word<baselines::Method>(name).value()}).value();
   }
   return planner;
 }
@@ -81,8 +82,8 @@ Flight Planner::plan(const Task& task) {
 Result<Trajectory> Planner::optimise(const Task& task, const Corridor& corridor) {
   const PlanRequest request{
       .start = at_rest(task.start), .goal = at_rest(task.goal), .limits = task.limits};
-  auto solution = baseline_ ? baseline_->optimise(request, corridor)
-                            : optimizer_->optimise(request, corridor);
+  auto solution =
+      baseline_ ? baseline_->optimise(request, corridor) : optimizer_->optimise(request, corridor);
   if (!solution) return solution.error();
   return solution->trajectory();
 }

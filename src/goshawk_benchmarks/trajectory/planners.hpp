@@ -39,7 +39,7 @@ class Planner {
  public:
   /// goshawk: JA*, corridor, time and shape together; and the three of the thesis' Table 3:
   /// thesis: JA*, corridor, one quintic a segment; minimum_snap (its Ref. [40]): RRT* and minimum
-  /// snap, no corridor; polynomial (its Ref. [42]): A*, corridor, polynomial that is checked and
+  /// snap, no corridor; minimum_jerk (its Ref. [42]): A*, corridor, polynomial that is checked and
   /// planned again
   static const std::vector<std::string>& names();
 

@@ -198,14 +198,12 @@ TEST(ActiveSetSolver, GivesUpSoonWhereManyBallsBind) {
   kind.segments = 6;
   const Corridor corridor = test::random_corridor(random, kind);
   const FlatState start = test::at_rest(corridor.waypoints_map.front());
-  const FlatState goal = test::at_rest(corridor.waypoints_map.back());
-  const Limits limits;
   const auto soonest =
-      TrajectoryOptimizer::create({}).value().optimise(corridor, start, goal, limits);
+      TrajectoryOptimizer::create({}).value().optimise(test::ask(corridor), corridor);
   ASSERT_TRUE(soonest);
   Plan plan;
   plan.knots.push_back(start);
-  for (const BezierPiece& piece : soonest->trajectory.pieces) {
+  for (const BezierPiece& piece : soonest->trajectory().pieces) {
     plan.durations_s.push_back(1.001 * piece.duration_s);
     plan.polytopes.push_back(piece.polytope);
     plan.knots.push_back(start);
@@ -214,8 +212,7 @@ TEST(ActiveSetSolver, GivesUpSoonWhereManyBallsBind) {
   plan.reference_s = plan.duration_s();
   SplineProblem problem;
   Units units;
-  ASSERT_TRUE(
-      make_problem({corridor, start, goal, limits}, plan, false, 1.0, HUGE_VAL, problem, units));
+  ASSERT_TRUE(make_problem(test::ask(corridor), corridor, plan, {.scale = false}, problem, units));
   ActiveSetSolver solver;
   const auto outcome = solver.solve(problem, {.gap = 1e-7});
   EXPECT_EQ(outcome.status, Status::iteration_limit);

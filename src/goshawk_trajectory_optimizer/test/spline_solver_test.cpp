@@ -194,8 +194,9 @@ TEST(SplineSolver, IterationsDoNotGrowWithThePieces) {
     i.corridor = test::random_corridor(random, kind);
     i.start = at_rest(i.corridor.waypoints_map.front());
     i.goal = at_rest(i.corridor.waypoints_map.back());
-    i.plan = cut_trapezoid(i.request(), {});
-    ASSERT_TRUE(make_problem(i.request(), i.plan, true, 100.0, HUGE_VAL, i.problem, i.units));
+    i.plan = cut_trapezoid(i.request(), i.corridor, {});
+    ASSERT_TRUE(make_problem(i.request(), i.corridor, i.plan, {.scale = true, .time_weight = 100.0},
+                             i.problem, i.units));
     const auto outcome = solver.solve(i.problem, {});
     EXPECT_EQ(outcome.status, SplineSolver::Status::solved);
     EXPECT_LT(outcome.iterations, 40) << i.problem.pieces() << " pieces";

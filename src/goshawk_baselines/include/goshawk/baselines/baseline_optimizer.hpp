@@ -16,18 +16,18 @@ class BaselineOptimizer {
   /// From the next request on by this config; if create() would refuse it, as before.
   Status reconfigure(const Config& config);
 
-  /// @param query a duration is not taken: baselines fly as soon as they can
+  /// @param request a duration is refused: baselines fly as soon as they can; yaw is left alone
   /// @return as TrajectoryOptimizer::optimise(), and not_certified
-  Result<trajectory_optimizer::Solution> optimise(const Corridor& corridor, const FlatState& start,
-                                                  const FlatState& goal, const Limits& limits,
-                                                  const trajectory_optimizer::Query& query = {});
+  Result<trajectory_optimizer::Solution> optimise(const PlanRequest& request,
+                                                  const Corridor& corridor,
+                                                  const std::function<bool()>& out_of_time = {});
 
-  /// For reports: "bezier-thesis", "polynomial-minimum-snap" or "polynomial-rechecked".
+  /// For reports: "bezier-thesis", "polynomial-minimum-snap" or "polynomial-minimum-jerk".
   std::string_view implementation() const;
 
  private:
   explicit BaselineOptimizer(Config config) : config_(std::move(config)) {}
-  Result<Trajectory> plan(const trajectory_optimizer::Task& task) const;
+  Result<Trajectory> plan(const trajectory_optimizer::Task& task);
 
   Config config_;
   trajectory_optimizer::Workspace workspace_;

@@ -40,7 +40,8 @@ class PolynomialSpline {
   Trajectory to_trajectory(double longest_piece_s) const;
 
  private:
-  using Coefficients = Eigen::Matrix<double, 3, 8>;  // of powers of t / duration
+  // Of powers of t / duration.
+  using Coefficients = Eigen::Matrix<double, 3, 8, Eigen::DontAlign>;
 
   std::vector<double> durations_s_;
   std::vector<Coefficients> coefficients_;

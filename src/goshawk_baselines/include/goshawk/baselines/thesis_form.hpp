@@ -6,7 +6,7 @@ namespace goshawk::baselines {
 
 /// The thesis' own form: one piece a segment of the corridor's waypoints, each as long as from rest
 /// to rest (thesis, time allocation, as corrected).
-trajectory_optimizer::Plan thesis_plan(const trajectory_optimizer::Request& request);
+trajectory_optimizer::Plan thesis_plan(const PlanRequest& request, const Corridor& corridor);
 
 /// Minimum jerk with these durations and limits per axis, never stretched. If the request's limits
 /// are of another kind, the same curve is flown no faster than they allow.

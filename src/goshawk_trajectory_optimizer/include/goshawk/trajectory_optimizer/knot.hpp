@@ -32,6 +32,6 @@ PointMap jerk_point(int j, double T);
 
 /// The integral of the squared jerk over a piece is, for each axis, x' Q x with
 /// x = (p, v, a of the first knot, p, v, a of the second) (corrections.md, jerk cost).
-Eigen::Matrix<double, 6, 6> jerk_hessian(double T);
+Eigen::Matrix<double, 6, 6, Eigen::DontAlign> jerk_hessian(double T);
 
 }  // namespace goshawk::trajectory_optimizer
