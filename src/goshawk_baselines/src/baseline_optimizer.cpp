@@ -19,15 +19,14 @@ bool stays_inside(const Polytope& polytope, const BezierPiece& piece) {
   return true;
 }
 
-Result<Trajectory> polynomial(const Request& request, int& plans) {
-  const auto& polytopes = request.corridor.polytopes;
-  auto answer =
-      rechecked_polynomial(request.corridor.waypoints_map, request.start, request.goal,
-                           request.limits, [&](const BezierPiece& piece) {
-                             return stays_inside(polytopes[std::size_t(piece.polytope)], piece);
-                           });
+Result<Trajectory> rechecked_minimum_jerk(const Task& task) {
+  const auto is_free = [&](const BezierPiece& piece) {
+    return stays_inside(task.corridor.polytopes[std::size_t(piece.polytope)], piece);
+  };
+  auto answer = rechecked_polynomial(task.corridor.waypoints_map, task.request.start,
+                                     task.request.goal, task.request.limits, is_free);
   if (!answer) return answer.error();
-  plans = answer->plans;
+  task.effort.solves = answer->plans;
   return std::move(answer->trajectory);
 }
 
@@ -52,7 +51,7 @@ Result<Trajectory> BaselineOptimizer::plan(const Task& task) {
     case Method::thesis:
       return thesis_form(task);
     case Method::minimum_jerk:
-      return minimum_jerk(task);
+      return rechecked_minimum_jerk(task);
     case Method::minimum_snap:
       break;
   }

@@ -73,7 +73,7 @@ TEST(BadInput, NumbersThatAreNotFiniteOrHuge) {
     corridor.polytopes[0].half_spaces[0].offset_m = bad;
     expect_code(optimise(corridor), ErrorCode::invalid_input);
     corridor = two_boxes(-0.5);
-    corridor.polytopes[1].A(0, 0) = bad;
+    corridor.polytopes[1].half_spaces[0].normal.x() = bad;
     expect_code(optimise(corridor), ErrorCode::invalid_input);
     corridor = two_boxes(-0.5);
     corridor.waypoints_map[1].x() = bad;

@@ -20,7 +20,7 @@ TEST(Flatness, BoundsHoldOnTheSampledCurve) {
   Random random(5);
   for (int i = 0; i < 50; ++i) {
     const auto trajectory =
-        fly(test::random_corridor(random, {}), {.v_max_m_s = 4.0, .a_max_m_s2 = 8.0}).trajectory;
+        fly(test::random_corridor(random, {}), {.v_max_m_s = 4.0, .a_max_m_s2 = 8.0}).trajectory();
     const FlatnessUse use = flatness_of(trajectory);
     for (int k = 0; k <= 1000; ++k) {
       const Vec3 f = trajectory.sample(trajectory.duration_s() * k / 1000).acceleration +
