@@ -13,7 +13,7 @@ namespace {
 
 constexpr YawMode kModes[] = {YawMode::fixed, YawMode::along_motion, YawMode::towards_point};
 
-Trajectory fly(const Corridor& corridor) {
+Trajectory trajectory_through(const Corridor& corridor) {
   auto optimizer = TrajectoryOptimizer::create({}).value();
   return optimizer.optimise(test::ask(corridor), corridor).value().trajectory();
 }
@@ -26,7 +26,7 @@ TEST(Yaw, BeginsAsAskedAndKeepsItsRateInEveryMode) {
   Random random(3);
   for (int i = 0; i < 60; ++i) {
     SCOPED_TRACE(i);
-    const auto trajectory = fly(test::random_corridor(random, {}));
+    const auto trajectory = trajectory_through(test::random_corridor(random, {}));
     const Config config{.yaw = kModes[i % 3],
                         .yaw_rate_max_rad_s = random.uniform(0.2, 3.0),
                         .yaw_point_x_m = random.uniform(-5.0, 5.0)};
@@ -50,7 +50,7 @@ TEST(Yaw, BeginsAsAskedAndKeepsItsRateInEveryMode) {
 TEST(Yaw, ARateAboveTheLimitIsTheLimit) {
   PlanRequest request;
   request.start_yaw_rate_rad_s = -9.0;
-  const auto curve = plan_yaw(fly(test::straight_corridor(4.0)), request,
+  const auto curve = plan_yaw(trajectory_through(test::straight_corridor(4.0)), request,
                               {.yaw = YawMode::fixed, .yaw_rate_max_rad_s = 0.5});
   ASSERT_TRUE(curve);
   EXPECT_NEAR(curve->rate_rad_s(0.0), -0.5, 1e-9);
@@ -60,14 +60,14 @@ TEST(Yaw, ARateAboveTheLimitIsTheLimit) {
 TEST(Yaw, LooksAlongTheMotionOnceItHasTurned) {
   PlanRequest request;
   request.start_yaw_rad = 3.0;
-  const auto curve = plan_yaw(fly(test::straight_corridor(8.0)), request,
+  const auto curve = plan_yaw(trajectory_through(test::straight_corridor(8.0)), request,
                               {.yaw = YawMode::along_motion, .yaw_rate_max_rad_s = 2.0});
   ASSERT_TRUE(curve);
   EXPECT_NEAR(turn(curve->yaw_rad(3.0), 0.0), 0.0, 1e-9);
 }
 
 TEST(Yaw, LooksAtAPointItFliesPast) {
-  const auto trajectory = fly(test::straight_corridor(8.0));
+  const auto trajectory = trajectory_through(test::straight_corridor(8.0));
   const Config config{.yaw = YawMode::towards_point,
                       .yaw_rate_max_rad_s = 3.0,
                       .yaw_point_x_m = 4.0,
@@ -94,7 +94,7 @@ TEST(Yaw, SaysNothingWithoutADirection) {
   point.yaw_point_x_m = point.yaw_point_y_m = 2.0;
   EXPECT_NEAR(wanted_yaw_rad(state, {}, point).value(), std::numbers::pi / 4.0, 1e-12);
   EXPECT_FALSE(wanted_yaw_rad(state, {}, {}));
-  EXPECT_FALSE(plan_yaw(fly(test::straight_corridor(2.0)), {}, {}));
+  EXPECT_FALSE(plan_yaw(trajectory_through(test::straight_corridor(2.0)), {}, {}));
 }
 
 // A stage keeps nothing: what the vehicle was told before is in the request or plays no part.
