@@ -43,11 +43,12 @@ CertifiedTrajectory plan(const std::shared_ptr<const VoxelGrid>& map, const Flat
   auto builder = need(corridor_builder::CorridorBuilder::create({}), "builder");
   const Corridor corridor = need(builder.build(*map, path.waypoints_map), "corridor");
   auto optimizer = need(trajectory_optimizer::TrajectoryOptimizer::create({}), "optimizer");
-  const auto solution = need(optimizer.optimise(corridor, start, goal, limits), "trajectory");
+  const PlanRequest request{.start = start, .goal = goal, .limits = limits};
+  const auto solution = need(optimizer.optimise(request, corridor), "trajectory");
   std::printf("path %.9f m, %zu polytopes, %zu pieces, %.9f s\n", path.pruned_length_m,
-              corridor.polytopes.size(), solution.trajectory.pieces.size(),
-              solution.trajectory.duration_s());
-  return need(certify(solution.trajectory, corridor.polytopes, limits, start, goal), "certificate");
+              corridor.polytopes.size(), solution.trajectory().pieces.size(),
+              solution.trajectory().duration_s());
+  return solution.certified;
 }
 
 tracker::CommittedTrajectory to_track(const CommittedTrajectory& committed) {
