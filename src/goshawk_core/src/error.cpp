@@ -41,6 +41,10 @@ constexpr std::array kNames{
     Named{ErrorCode::io_failed, "io_failed"},
     Named{ErrorCode::collision, "collision"},
     Named{ErrorCode::cancelled, "cancelled"},
+    Named{ErrorCode::trajectory_blocked, "trajectory_blocked"},
+    Named{ErrorCode::process_stalled, "process_stalled"},
+    Named{ErrorCode::clock_set, "clock_set"},
+    Named{ErrorCode::second_writer, "second_writer"},
 };
 
 constexpr auto kCodes = [] {
