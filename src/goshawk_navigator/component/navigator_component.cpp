@@ -19,7 +19,8 @@ std::uint64_t first_id(std::int64_t now_ns) {
 constexpr double kAlive_s = 0.5;  // the newest state again: the tracker lands without it
 
 /// goal_pose, odom, trajectory, stage_report -> plan_request, committed_trajectory,
-/// navigator_state, navigator_alive
+/// navigator_state, navigator_alive. Counts on the monotonic clock; messages carry the wall
+/// clock's.
 class NavigatorComponent : public Component {
  public:
   explicit NavigatorComponent(Node& node)
@@ -36,7 +37,7 @@ class NavigatorComponent : public Component {
             node.advertise<visualization_msgs::msg::MarkerArray>("markers", Qos::best_effort())) {
     subscribe();
     node.every(0.02, [this] {
-      navigator_.tick(node_.now_ns());
+      navigator_.tick(node_.monotonic_ns());
       carry_out();
     });
     publish(StateOrder{});
@@ -56,11 +57,10 @@ class NavigatorComponent : public Component {
         "goal_pose", Qos::reliable_last(),
         [this](const geometry_msgs::msg::PoseStamped& m, const MessageInfo&) { on_goal(m); });
     node_.subscribe<nav_msgs::msg::Odometry>(
-        "odom", Qos::best_effort(),
-        [this](const nav_msgs::msg::Odometry& m, const MessageInfo& info) {
+        "odom", Qos::best_effort(), [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) {
           const auto state = conversions::from_msg(m);
           if (!state) return;  // the tracker reports bad odometry
-          navigator_.on_odometry(state->position_map, state->velocity_map, info.received_ns);
+          navigator_.on_odometry(state->position_map, state->velocity_map, node_.monotonic_ns());
         });
     node_.subscribe<msg::BezierTrajectory>(
         "trajectory", Qos::reliable_last(),
@@ -78,7 +78,7 @@ class NavigatorComponent : public Component {
       const auto& q = m.pose().orientation();
       const Eigen::Quaterniond rotation(q.w(), q.x(), q.y(), q.z());
       status = navigator_.on_goal(conversions::from_msg(m.pose().position()),
-                                  conversions::yaw_of(rotation), node_.now_ns());
+                                  conversions::yaw_of(rotation), node_.monotonic_ns());
     }
     if (!status) {
       reporter_.fault(status.error());
@@ -94,13 +94,14 @@ class NavigatorComponent : public Component {
     auto received = conversions::from_msg(m);
     if (!received) {
       navigator_.on_report(m.request().id(), "trajectory_optimizer", received.error(),
-                           info.received_ns);
+                           node_.monotonic_ns());
       reporter_.failed(m.request().id(), received.error());
     } else {
       wire_ns_ = wire_time_ns(m.header(), info);
       candidate_ = m;
       candidate_received_ = *received;
-      navigator_.on_trajectory(m.request().id(), std::move(received->trajectory), info.received_ns);
+      navigator_.on_trajectory(m.request().id(), std::move(received->trajectory),
+                               node_.monotonic_ns());
     }
     carry_out();
   }
@@ -110,7 +111,7 @@ class NavigatorComponent : public Component {
     for (const ErrorCode code : all_error_codes()) {
       if (to_string(code) == m.code()) outcome.code = code;
     }
-    navigator_.on_report(m.request_id(), m.stage(), outcome, node_.now_ns());
+    navigator_.on_report(m.request_id(), m.stage(), outcome, node_.monotonic_ns());
     carry_out();
   }
 
@@ -133,16 +134,21 @@ class NavigatorComponent : public Component {
     send(requests_, m);
   }
 
+  std::int64_t to_wall_ns(std::int64_t monotonic_ns) const {
+    return monotonic_ns + (node_.now_ns() - node_.monotonic_ns());
+  }
+
   void publish(const CommitOrder& order) {
+    const std::int64_t start_ns = to_wall_ns(order.start_time_ns);
     msg::CommittedTrajectory m;
     m.header(conversions::make_header(node_.now_ns()));
-    m.start_time(conversions::to_stamp(order.start_time_ns));
+    m.start_time(conversions::to_stamp(start_ns));
     m.yaw(order.yaw_rad);
     m.trajectory(candidate_);
     send(commits_, m);
     reporter_.answered(order.id, {.wire_ns = wire_ns_, .compute_ns = 0});
-    send(path_lines_, path_line(candidate_received_.trajectory, order.start_time_ns, 0.05));
-    send(markers_, corridor_markers(candidate_received_, order.start_time_ns));
+    send(path_lines_, path_line(candidate_received_.trajectory, start_ns, 0.05));
+    send(markers_, corridor_markers(candidate_received_, start_ns));
   }
 
   void publish(const StateOrder& order) {

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -8,6 +10,7 @@
 #include "goshawk/runtime/map_subscription.hpp"
 #include "goshawk/runtime/stage.hpp"
 #include "goshawk/tracker/config.hpp"
+#include "goshawk/tracker/odometry_clock.hpp"
 #include "goshawk/tracker/tracker.hpp"
 
 namespace goshawk::tracker {
@@ -17,6 +20,7 @@ using namespace goshawk::runtime;
 namespace msg = goshawk_msgs::msg;
 
 constexpr std::int64_t kComplainEvery_ns = 1'000'000'000;
+constexpr double kClockStep_s = 0.02;  // less is not worth a sentence
 
 Tracker make_tracker(const Config& config) {
   auto tracker = Tracker::create(config);
@@ -65,7 +69,8 @@ class StepStatistics {
 };
 
 /// committed_trajectory, odom, navigator_alive -> command, tracking_state; and map/voxels, once
-/// there may be a landing
+/// there may be a landing. Counts on the monotonic clock: what others stamp with their wall clocks
+/// is brought to it once, when it arrives.
 class TrackerComponent : public Component {
  public:
   explicit TrackerComponent(Node& node)
@@ -73,6 +78,7 @@ class TrackerComponent : public Component {
         config_(
             node.parameters<Config>([this](const Config& c) { return tracker_.reconfigure(c); })),
         tracker_(make_tracker(config_)),
+        odometry_clock_(config_.odometry_timeout_s),
         reporter_(node, config_.controller),
         commands_(node.advertise<msg::ThrustAttitude>("command", Qos::best_effort())),
         states_(node.advertise<msg::TrackingState>("tracking_state", Qos::best_effort())) {
@@ -82,27 +88,34 @@ class TrackerComponent : public Component {
     node.subscribe<nav_msgs::msg::Odometry>(
         "odom", Qos::best_effort(),
         [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) { on_odometry(m); });
-    node.subscribe<msg::NavigatorState>(
-        "navigator_alive", Qos::best_effort(),
-        [this](const msg::NavigatorState&, const MessageInfo& info) {
-          tracker_.heard_navigator(info.received_ns);
-        });
+    node.subscribe<msg::NavigatorState>("navigator_alive", Qos::best_effort(),
+                                        [this](const msg::NavigatorState&, const MessageInfo&) {
+                                          tracker_.heard_navigator(node_.monotonic_ns());
+                                        });
     node.every(0.05, [this] { watch(); });
     reporter_.ready("tracks with " + config_.controller);
   }
 
  private:
+  /// A commit, and what its start is on the monotonic clock.
+  struct Commit {
+    msg::CommittedTrajectory message;
+    std::int64_t start_ns = 0;
+  };
+
   void on_commit(const msg::CommittedTrajectory& m, const MessageInfo& info) {
     const Timing timing{.wire_ns = wire_time_ns(m.header(), info)};
+    const std::int64_t to_monotonic_ns = node_.monotonic_ns() - node_.now_ns();
+    const std::int64_t start_ns = conversions::to_ns(m.start_time()) + to_monotonic_ns;
     // Latched, it can arrive before the first odometry does: it waits, as nothing is flown yet.
     if (tracker_.status().mode == Mode::idle) {
-      waiting_ = m;
+      waiting_ = Commit{m, start_ns};
       return;
     }
-    accept(m, timing);
+    accept(m, start_ns, timing);
   }
 
-  void accept(const msg::CommittedTrajectory& m, Timing timing) {
+  void accept(const msg::CommittedTrajectory& m, std::int64_t start_ns, Timing timing) {
     const std::uint64_t id = m.trajectory().request().id();
     auto received = conversions::from_msg(m.trajectory());
     if (!received) return reporter_.failed(id, received.error(), timing);
@@ -112,12 +125,12 @@ class TrackerComponent : public Component {
                                   .limits = received->request.limits,
                                   .start = received->request.start,
                                   .goal = received->request.goal,
-                                  .start_time_ns = conversions::to_ns(m.start_time()),
+                                  .start_time_ns = start_ns,
                                   .yaw_rad = m.yaw(),
                                   .yaw_step_s = m.trajectory().yaw_step(),
                                   .yaw_points_rad = m.trajectory().yaw_points()};
     const auto [status, compute_ns] =
-        timed([&] { return tracker_.accept(std::move(committed), node_.now_ns()); });
+        timed([&] { return tracker_.accept(std::move(committed), node_.monotonic_ns()); });
     timing.compute_ns = compute_ns;
     if (!status) return reporter_.failed(id, status.error(), timing);
     accepted_ = timing;
@@ -127,20 +140,29 @@ class TrackerComponent : public Component {
   void on_odometry(const nav_msgs::msg::Odometry& m) {
     const auto state = conversions::from_msg(m);
     if (!state) return complain(state.error());
-    const std::int64_t stamp_ns = conversions::to_ns(m.header().stamp());
-    const std::int64_t now_ns = node_.now_ns();
+    const std::int64_t sent_stamp_ns = conversions::to_ns(m.header().stamp());
+    const std::int64_t now_ns = node_.monotonic_ns();
+    const auto made = odometry_clock_.read(sent_stamp_ns, node_.now_ns(), now_ns);
+    if (std::abs(made.set_by_s) >= kClockStep_s) report_clock(made.set_by_s);
     const auto [command, compute_ns] =
-        timed([&] { return tracker_.step(*state, stamp_ns, now_ns); });
+        timed([&] { return tracker_.step(*state, made.time_ns, now_ns); });
     count_step(compute_ns, now_ns);
     if (!command) return complain(command.error());
     conversions::fill_msg(*command, command_message_);
     command_message_.header(conversions::make_header(node_.now_ns()));
     if (auto status = commands_.publish(command_message_); !status) complain(status.error());
     if (waiting_) {
-      accept(*waiting_, {});
+      accept(waiting_->message, waiting_->start_ns, {});
       waiting_.reset();
     }
-    publish_state(stamp_ns);
+    publish_state(sent_stamp_ns);
+  }
+
+  void report_clock(double set_by_s) {
+    reporter_.fault(fail(ErrorCode::clock_set,
+                         fmt::format("the clock that stamps odometry was set by {:.3g} s: its age "
+                                     "is taken to be as before",
+                                     set_by_s)));
   }
 
   // A second answer to the request, once its trajectory is flown: how well, and at what cost.
@@ -164,11 +186,11 @@ class TrackerComponent : public Component {
 
   // What must be said when odometry or the navigator are silent.
   void watch() {
-    tracker_.watch(node_.now_ns());
+    tracker_.watch(node_.monotonic_ns());
     // Not before: a large map would keep the control loop waiting while it is taken in.
     if (tracker_.needs_map() && !map_) {
       map_.emplace(node_, reporter_,
-                   [this](const auto& grid) { tracker_.set_map(grid, node_.now_ns()); });
+                   [this](const auto& grid) { tracker_.set_map(grid, node_.monotonic_ns()); });
     }
     report_fault(tracker_.status());
   }
@@ -200,7 +222,7 @@ class TrackerComponent : public Component {
 
   // Bad odometry comes 250 times a second: one sentence a second tells as much.
   void complain(const Error& error) {
-    const std::int64_t now_ns = node_.now_ns();
+    const std::int64_t now_ns = node_.monotonic_ns();
     if (now_ns - complained_ns_ < kComplainEvery_ns) return;
     complained_ns_ = now_ns;
     reporter_.fault(error);
@@ -209,12 +231,13 @@ class TrackerComponent : public Component {
   Node& node_;
   Config config_;
   Tracker tracker_;
+  OdometryClock odometry_clock_;
   StageReporter reporter_;
   Publisher<msg::ThrustAttitude> commands_;
   Publisher<msg::TrackingState> states_;
   msg::ThrustAttitude command_message_;
   std::optional<MapSubscription> map_;
-  std::optional<msg::CommittedTrajectory> waiting_;
+  std::optional<Commit> waiting_;
   StepStatistics steps_;
   Timing accepted_;       // of the newest trajectory that was
   std::string reported_;  // the newest fault's sentence

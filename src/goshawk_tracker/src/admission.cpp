@@ -35,7 +35,7 @@ Status check_numbers(const CommittedTrajectory& c) {
     }
   }
   if (std::abs(double(c.start_time_ns)) > double(kTimeBound_ns)) {
-    return invalid("its start time is beyond all clocks");
+    return invalid("its start time is outside the supported range");
   }
   if (auto status = c.limits.check(); !status) {
     return refuse(c, status.code(), status.error().message);

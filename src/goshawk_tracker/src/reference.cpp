@@ -38,10 +38,15 @@ Reference Reference::follow(CommittedTrajectory committed) {
 }
 
 void Reference::brake(std::int64_t now_ns, double deceleration_m_s2) {
-  if (!committed_ || brake_ || at_rest(now_ns)) return;
+  if (!committed_ || braking() || at_rest(now_ns)) return;
   const double speed = at(now_ns).velocity.norm();
   brake_ =
       Brake{now_ns, path_time(now_ns).s, std::max(kShortestBrake_s, speed / deceleration_m_s2)};
+}
+
+void Reference::stop(const BezierPiece& curve, std::int64_t now_ns) {
+  const double path_time_s = stop_ ? stop_->path_time_s : progress_s(now_ns);
+  stop_ = Stop{now_ns, path_time_s, curve};
 }
 
 Reference::PathTime Reference::path_time(std::int64_t time_ns) const {
@@ -56,6 +61,11 @@ Reference::PathTime Reference::path_time(std::int64_t time_ns) const {
 }
 
 FlatState Reference::at(std::int64_t time_ns) const {
+  if (stop_) {
+    const double t = std::max(0.0, seconds(stop_->begin_ns, time_ns));
+    if (t < stop_->curve.duration_s) return stop_->curve.sample(t);
+    return {.position = stop_->curve.control_points.col(5)};
+  }
   if (!committed_) return {.position = hold_map_};
   const PathTime t = path_time(time_ns);
   const auto& pieces = committed_->trajectory.pieces;
@@ -73,13 +83,15 @@ FlatState Reference::at(std::int64_t time_ns) const {
 }
 
 bool Reference::at_rest(std::int64_t time_ns) const {
+  if (stop_) return seconds(stop_->begin_ns, time_ns) >= stop_->curve.duration_s;
   if (!committed_) return true;
   const PathTime t = path_time(time_ns);
   return t.rate == 0.0 || t.s >= duration_s_;
 }
 
 double Reference::progress_s(std::int64_t time_ns) const {
-  return committed_ ? std::clamp(path_time(time_ns).s, 0.0, duration_s_) : 0.0;
+  const double s = !committed_ ? 0.0 : stop_ ? stop_->path_time_s : path_time(time_ns).s;
+  return std::clamp(s, 0.0, duration_s_);
 }
 
 }  // namespace goshawk::tracker

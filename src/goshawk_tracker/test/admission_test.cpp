@@ -41,7 +41,7 @@ TEST(Admission, EachWayToBeWrongIsRefusedWithItsCodeAndASentence) {
       {"NaN goal", ErrorCode::invalid_input, "start or goal",
        [&](auto& c) { c.goal.velocity.x() = nan; }},
       {"NaN yaw", ErrorCode::invalid_input, "yaw", [&](auto& c) { c.yaw_rad = nan; }},
-      {"start time", ErrorCode::invalid_input, "clocks",
+      {"start time", ErrorCode::invalid_input, "supported range",
        [](auto& c) { c.start_time_ns = std::numeric_limits<std::int64_t>::min(); }},
       {"limits", ErrorCode::invalid_limits, "v_max", [](auto& c) { c.limits.v_max_m_s = -1.0; }},
       {"no polytope", ErrorCode::invalid_input, "names polytope 0 of 0",
