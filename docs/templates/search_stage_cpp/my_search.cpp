@@ -3,11 +3,12 @@
 
 #include <algorithm>
 
-#include "goshawk/runtime/map_subscription.hpp"
-#include "goshawk/runtime/stage.hpp"
+#include "goshawk/stage/intake.hpp"
+#include "goshawk/stage/map_subscription.hpp"
 
 using namespace goshawk;
 using namespace goshawk::runtime;
+using namespace goshawk::stage;
 namespace msg = goshawk_msgs::msg;
 
 // From start to goal through centres of free voxels; the way turns at each point between.

@@ -43,7 +43,7 @@ Volume volume_of(const Polytope& polytope, const VoxelGrid& grid) {
       double first = from.x(), last = to.x();
       for (int i = 0; i < polytope.faces(); ++i) {
         const double n = polytope.A(i, 0) * g.resolution_m;
-        const double rest = polytope.b[i] - polytope.A.row(i).dot(p);
+        const double rest = polytope.b()[i] - polytope.A().row(i).dot(p);
         if (n > 1e-12) last = std::min(last, rest / n);
         if (n < -1e-12) first = std::max(first, rest / n);
         if (std::abs(n) <= 1e-12 && rest < 0.0) last = first;
@@ -65,7 +65,7 @@ int faces_of(const Polytope& polytope) {
   int faces = 0;
   for (int i = 0; i < polytope.faces(); ++i) {
     const auto touching = std::count_if(vertices.begin(), vertices.end(), [&](const Vec3& v) {
-      return std::abs(polytope.A.row(i).dot(v) - polytope.b[i]) < 1e-8;
+      return std::abs(polytope.A().row(i).dot(v) - polytope.b()[i]) < 1e-8;
     });
     faces += touching >= 3;
   }

@@ -8,7 +8,7 @@
 #include "common/child.hpp"
 #include "goshawk/conversions/plan.hpp"
 #include "goshawk/conversions/vehicle.hpp"
-#include "goshawk/recording/messages.hpp"
+#include "goshawk/recording_tools/messages.hpp"
 #include "goshawk/runtime/component.hpp"
 #include "goshawk/runtime/node.hpp"
 #include "nav_msgs.h"

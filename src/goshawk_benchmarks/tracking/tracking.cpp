@@ -108,7 +108,7 @@ struct Flown {
 using StepTimes = std::vector<double>;
 
 Flown fly(const Mission& mission, const std::string& controller, simulator::Config weather,
-          const simulator::PlantFactory& plant, StepTimes& steps_us) {
+          const plant::PlantFactory& plant, StepTimes& steps_us) {
   weather.gust_seed = weather.sensor.seed = int(mission.committed.id);
   auto vehicle = simulator::Quadrotor::create(weather, plant).value();
   tracker::Config config;
@@ -211,8 +211,8 @@ void run(Report& report) {
           StepTimes steps_us;
           for (const auto& mission : missions) {
             flights.push_back(fly(mission, controller, weather.config,
-                                  mujoco ? simulator::PlantFactory(mujoco::make_mujoco_plant)
-                                         : simulator::PlantFactory(simulator::make_rigid_body),
+                                  mujoco ? plant::PlantFactory(mujoco::make_mujoco_plant)
+                                         : plant::PlantFactory(simulator::make_rigid_body),
                                   steps_us));
           }
           add_row(report, density, controller, weather.name, mujoco ? "mujoco" : "ours", flights,

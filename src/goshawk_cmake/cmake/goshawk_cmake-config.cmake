@@ -66,7 +66,8 @@ endfunction()
 
 # goshawk_core_library(NAME path_search SOURCES ... LINK ... PRIVATE_LINK ... ALSO goshawk_x)
 # makes libgoshawk_NAME.so, target goshawk_NAME::core after install. ALSO names further Goshawk
-# libraries it may link beside goshawk_core; a test proves that it links nothing else of ours.
+# libraries that it may use beside goshawk_core; a test proves that it links and includes nothing
+# else of ours, and no middleware.
 function(goshawk_core_library)
   cmake_parse_arguments(arg "" "NAME" "SOURCES;LINK;PRIVATE_LINK;ALSO" ${ARGN})
   set(target goshawk_${arg_NAME})
@@ -78,8 +79,11 @@ function(goshawk_core_library)
   target_link_libraries(${target} PUBLIC ${arg_LINK} PRIVATE ${arg_PRIVATE_LINK})
   _goshawk_warnings(${target})
   if(BUILD_TESTING)
-    add_test(NAME ${target}_links_no_middleware
-      COMMAND ${CMAKE_COMMAND} -DLIBRARY=$<TARGET_FILE:${target}>
+    list(FILTER arg_SOURCES EXCLUDE REGEX "^[$/]")  # objects made elsewhere, generated files
+    set(sources ${arg_SOURCES})
+    add_test(NAME ${target}_has_no_middleware
+      COMMAND ${CMAKE_COMMAND} -DLIBRARY=$<TARGET_FILE:${target}> -DNAME=${arg_NAME}
+              -DFOLDER=${CMAKE_CURRENT_SOURCE_DIR} "-DSOURCES=${sources}"
               "-DALLOWED=goshawk_core;${arg_ALSO}"
               -P ${GOSHAWK_CMAKE_DIR}/goshawk_no_middleware_test.cmake)
   endif()
@@ -90,10 +94,10 @@ endfunction()
 # which goshawk_container loads by the name NAME.
 function(goshawk_component)
   cmake_parse_arguments(arg "" "NAME" "SOURCES;LINK" ${ARGN})
-  find_package(goshawk_runtime REQUIRED)
+  find_package(goshawk_stage REQUIRED)
   set(target goshawk_${arg_NAME}_component)
   add_library(${target} MODULE ${arg_SOURCES})
-  target_link_libraries(${target} PRIVATE ${arg_LINK} goshawk_runtime::runtime)
+  target_link_libraries(${target} PRIVATE ${arg_LINK} goshawk_stage::stage)
   _goshawk_warnings(${target})
   install(TARGETS ${target} LIBRARY DESTINATION lib)
 endfunction()

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "goshawk/conversions/grid.hpp"
-#include "goshawk/recording/messages.hpp"
+#include "goshawk/recording_tools/messages.hpp"
 
 namespace goshawk::conformance {
 

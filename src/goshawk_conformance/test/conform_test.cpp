@@ -5,14 +5,15 @@
 
 #include "goshawk/path_search/config.hpp"
 #include "goshawk/path_search/path_search.hpp"
-#include "goshawk/runtime/map_subscription.hpp"
-#include "goshawk/runtime/stage.hpp"
+#include "goshawk/stage/intake.hpp"
+#include "goshawk/stage/map_subscription.hpp"
 #include "support.hpp"
 
 namespace goshawk::conformance {
 namespace {
 
 using namespace goshawk::runtime;
+using namespace goshawk::stage;
 namespace msg = goshawk_msgs::msg;
 using conformance_test::failed;
 using conformance_test::join;

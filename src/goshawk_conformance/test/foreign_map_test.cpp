@@ -9,7 +9,7 @@
 #include "goshawk/map_server/live_map.hpp"
 #include "goshawk/recording/sink.hpp"
 #include "goshawk/recording/writer.hpp"
-#include "goshawk/runtime/stage_reporter.hpp"
+#include "goshawk/stage/stage_reporter.hpp"
 #include "octomap_msgs.h"
 #include "sensor_msgs.h"
 #include "support.hpp"
@@ -111,7 +111,7 @@ class ForeignMap {
   runtime::Node& node_;
   MapFault fault_;
   map_server::LiveMap map_;
-  runtime::StageReporter reporter_;
+  stage::StageReporter reporter_;
   runtime::Publisher<msg::VoxelGrid> wholes_;
   runtime::Publisher<msg::VoxelGridUpdate> updates_;
   runtime::Publisher<octomap_msgs::msg::Octomap> octomap_;

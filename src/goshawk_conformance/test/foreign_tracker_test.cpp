@@ -4,7 +4,7 @@
 
 #include "goshawk/conversions/plan.hpp"
 #include "goshawk/conversions/vehicle.hpp"
-#include "goshawk/runtime/stage_reporter.hpp"
+#include "goshawk/stage/stage_reporter.hpp"
 #include "goshawk/tracker/config.hpp"
 #include "goshawk/tracker/tracker.hpp"
 #include "support.hpp"
@@ -89,7 +89,7 @@ class ForeignTracker {
   TrackerFault fault_;
   int steps_ = 0;
   tracker::Tracker tracker_;
-  runtime::StageReporter reporter_;
+  stage::StageReporter reporter_;
   runtime::Publisher<msg::ThrustAttitude> commands_;
   runtime::Publisher<msg::TrackingState> states_;
   msg::ThrustAttitude command_;

@@ -87,16 +87,23 @@ Result<Polytope> from_msg(const goshawk_msgs::msg::Polytope& m) {
                                               " offsets: three components an offset are needed");
   }
   Polytope p;
-  p.A = Eigen::Map<const Polytope::Normals>(m.normals().data(), Eigen::Index(faces), 3);
-  p.b = Eigen::Map<const Eigen::VectorXd>(m.offsets().data(), Eigen::Index(faces));
+  p.half_spaces.reserve(faces);
+  for (std::size_t i = 0; i < faces; ++i) {
+    const double* n = m.normals().data() + 3 * i;
+    p.add({n[0], n[1], n[2]}, m.offsets()[i]);
+  }
   if (auto status = p.check(); !status) return status.error();
   return p;
 }
 
 goshawk_msgs::msg::Polytope to_msg(const Polytope& p) {
   goshawk_msgs::msg::Polytope m;
-  m.normals().assign(p.A.data(), p.A.data() + p.A.size());
-  m.offsets().assign(p.b.data(), p.b.data() + p.b.size());
+  m.normals().reserve(3 * p.half_spaces.size());
+  m.offsets().reserve(p.half_spaces.size());
+  for (const HalfSpace& face : p.half_spaces) {
+    m.normals().insert(m.normals().end(), face.normal.begin(), face.normal.end());
+    m.offsets().push_back(face.offset_m);
+  }
   return m;
 }
 
@@ -157,9 +164,9 @@ goshawk_msgs::msg::Certificate to_msg(const Certificate& c) {
   m.position(c.position_m);
   m.velocity(c.velocity_m_s);
   m.acceleration(c.acceleration_m_s2);
-  m.joint_position(c.joint_position_m);
-  m.joint_velocity(c.joint_velocity_m_s);
-  m.joint_acceleration(c.joint_acceleration_m_s2);
+  m.joint_position(c.continuity_position_m);
+  m.joint_velocity(c.continuity_velocity_m_s);
+  m.joint_acceleration(c.continuity_acceleration_m_s2);
   m.start(c.start_m);
   m.goal(c.goal_m);
   m.jerk(c.jerk_m_s3);

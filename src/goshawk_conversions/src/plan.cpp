@@ -149,7 +149,7 @@ Result<ReceivedTrajectory> from_msg(const goshawk_msgs::msg::BezierTrajectory& m
   if (!trajectory) return trajectory.error();
   ReceivedTrajectory received{
       *std::move(request), *std::move(trajectory), *std::move(polytopes), {}};
-  received.certificate = certify(received.trajectory, received.polytopes, received.request.limits,
+  received.certificate = measure(received.trajectory, received.polytopes, received.request.limits,
                                  received.request.start, received.request.goal);
   if (!received.certificate.holds()) {
     return fail(ErrorCode::not_certified,

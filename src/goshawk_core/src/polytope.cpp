@@ -1,5 +1,7 @@
 #include "goshawk/core/polytope.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -9,7 +11,8 @@
 namespace goshawk {
 namespace {
 
-using Vec4 = Eigen::Vector4d;
+using Row4 = Eigen::Vector4d;
+using Faces = std::span<const HalfSpace>;
 
 // Maximise r subject to n . x + r <= b: a linear programme in (x, r). Solved by the simplex
 // method on its dual, whose basis is four constraints and whose multipliers are the current
@@ -20,7 +23,7 @@ using Vec4 = Eigen::Vector4d;
 // before the answer is believed, and after every few pivots, so that rounding does not gather.
 class LargestBall {
  public:
-  explicit LargestBall(std::span<const HalfSpaces> polytopes) : polytopes_(polytopes) {}
+  explicit LargestBall(std::span<const Faces> polytopes) : polytopes_(polytopes) {}
 
   Ball solve() {
     if (!finite()) return {Vec3::Zero(), -std::numeric_limits<double>::infinity()};
@@ -47,10 +50,8 @@ class LargestBall {
   static constexpr int kPivotsUntilRefresh = 24;
 
   bool finite() const {
-    return std::ranges::all_of(polytopes_, [](const HalfSpaces& p) {
-      using Row = Eigen::Map<const Eigen::VectorXd>;
-      return p.count >= 0 && Row(p.normals, 3 * p.count).allFinite() &&
-             Row(p.offsets, p.count).allFinite();
+    return std::ranges::all_of(polytopes_, [](const Faces& faces) {
+      return std::ranges::all_of(faces, &HalfSpace::is_finite);
     });
   }
 
@@ -70,11 +71,8 @@ class LargestBall {
   // Distance to the nearest face, negative outside.
   double room_at(const Vec3& p) const {
     double room = std::numeric_limits<double>::infinity();
-    for (const HalfSpaces& polytope : polytopes_) {
-      const double* n = polytope.normals;
-      for (int i = 0; i < polytope.count; ++i, n += 3) {
-        room = std::min(room, polytope.offsets[i] - (n[0] * p[0] + n[1] * p[1] + n[2] * p[2]));
-      }
+    for (const Faces& faces : polytopes_) {
+      for (const HalfSpace& face : faces) room = std::min(room, -face.distance_m(p));
     }
     return room;
   }
@@ -82,12 +80,12 @@ class LargestBall {
   // The entering constraint takes the place of one of the basis. @return false where none can
   // leave, which finite data do not allow: the dual is bounded
   bool pivot() {
-    const Vec4 direction = inverse_.transpose() * entering_;
+    const Row4 direction = inverse_.transpose() * entering_;
     const int leaving = find_leaving(inverse_.row(3).transpose(), direction);
     if (leaving < 0) return false;
-    const Vec4 column = inverse_.col(leaving) / direction[leaving];
+    const Row4 column = inverse_.col(leaving) / direction[leaving];
     point_ -= (entering_.dot(point_) - entering_bound_) * column;
-    Vec4 change = direction;
+    Row4 change = direction;
     change[leaving] -= 1.0;
     inverse_.noalias() -= column * change.transpose();
     basis_.row(leaving) = entering_;
@@ -97,7 +95,7 @@ class LargestBall {
 
   // Ratio test. Boxes make ties the rule (weights of zero); of those the largest pivot leaves,
   // which keeps the basis far from singular.
-  static int find_leaving(const Vec4& weights, const Vec4& direction) {
+  static int find_leaving(const Row4& weights, const Row4& direction) {
     constexpr double smallest = 1e-9;
     double least = std::numeric_limits<double>::infinity();
     for (int i = 0; i < 4; ++i) {
@@ -116,82 +114,83 @@ class LargestBall {
   bool find_entering(bool first) {
     double worst = 1e-12 * (1.0 + point_.head<3>().cwiseAbs().maxCoeff());
     const double x = point_[0], y = point_[1], z = point_[2], r = point_[3];
-    const double* row = nullptr;
-    for (const HalfSpaces& polytope : polytopes_) {
-      const double* n = polytope.normals;
-      const double* b = polytope.offsets;
-      for (int i = 0; i < polytope.count && !(first && row); ++i, n += 3) {
-        const double excess = n[0] * x + n[1] * y + n[2] * z + r - b[i];
+    const HalfSpace* most = nullptr;
+    for (const Faces& faces : polytopes_) {
+      for (const HalfSpace& face : faces) {
+        const Vec3& n = face.normal;
+        const double excess = n[0] * x + n[1] * y + n[2] * z + r - face.offset_m;
         if (excess <= worst) continue;
         worst = excess;
-        row = n;
-        entering_bound_ = b[i];
+        most = &face;
+        if (first) break;
       }
+      if (first && most != nullptr) break;
     }
-    if (row) entering_ << row[0], row[1], row[2], 1.0;
-    return row != nullptr;
+    if (most == nullptr) return false;
+    entering_ << most->normal, 1.0;
+    entering_bound_ = most->offset_m;
+    return true;
   }
 
-  std::span<const HalfSpaces> polytopes_;
+  std::span<const Faces> polytopes_;
   Eigen::Matrix4d basis_;    // rows are constraints
   Eigen::Matrix4d inverse_;  // of basis_
-  Vec4 bound_;
-  Vec4 point_;
-  Vec4 entering_;
+  Row4 bound_;
+  Row4 point_;
+  Row4 entering_;
   double entering_bound_ = 0.0;
 };
 
-// A negative count where the sizes disagree.
-HalfSpaces half_spaces(const Polytope& polytope) {
-  static_assert(Polytope::Normals::IsRowMajor);
-  const int count = polytope.A.rows() == polytope.b.size() ? polytope.faces() : -1;
-  return {polytope.A.data(), polytope.b.data(), count};
-}
-
 }  // namespace
 
-void Polytope::add(const Vec3& outward_normal, double offset_m) {
-  A.conservativeResize(faces() + 1, 3);
-  b.conservativeResize(A.rows());
-  A.row(A.rows() - 1) = outward_normal;
-  b[A.rows() - 1] = offset_m;
+double Polytope::violation(const Vec3& p_map) const {
+  double worst = -std::numeric_limits<double>::infinity();
+  for (const HalfSpace& face : half_spaces) {
+    const double distance = face.distance_m(p_map);
+    // NaN is the worst of all and stays.
+    if (distance > worst || std::isnan(distance)) worst = distance;
+  }
+  return worst;
 }
 
 Status Polytope::check() const {
-  if (A.rows() != b.size() || A.rows() == 0) {
-    return fail(ErrorCode::invalid_input, "a polytope has " + std::to_string(A.rows()) +
-                                              " normals and " + std::to_string(b.size()) +
-                                              " offsets: equal numbers above zero are needed");
-  }
-  if (!A.allFinite() || !b.allFinite()) {
+  if (half_spaces.empty()) return fail(ErrorCode::invalid_input, "a polytope has no face");
+  if (!std::ranges::all_of(half_spaces, &HalfSpace::is_finite)) {
     return fail(ErrorCode::invalid_input, "a polytope has a face that is not finite");
   }
-  if ((A.rowwise().norm().array() - 1.0).abs().maxCoeff() > 1e-6) {
-    return fail(ErrorCode::invalid_input, "a polytope has a normal that is not of length 1");
+  for (const HalfSpace& face : half_spaces) {
+    const double length = face.normal.norm();
+    if (std::abs(length - 1.0) <= 1e-6) continue;
+    return fail(ErrorCode::invalid_input,
+                fmt::format("a polytope has a normal of length {:.6g}: it must be 1", length));
   }
-  return success();
+  const bool finite = std::isfinite(valid_from_s) && std::isfinite(valid_until_s);
+  if (always_valid() || (finite && valid_from_s < valid_until_s)) return success();
+  return fail(ErrorCode::invalid_input,
+              fmt::format("a polytope is valid from {:.3g} s to {:.3g} s: an interval must end "
+                          "after it begins (both 0: always)",
+                          valid_from_s, valid_until_s));
 }
 
 Polytope Polytope::box(const Vec3& lower_map, const Vec3& upper_map) {
   Polytope polytope;
-  polytope.A.resize(6, 3);
-  polytope.b.resize(6);
-  polytope.A << Eigen::Matrix3d::Identity(), -Eigen::Matrix3d::Identity();
-  polytope.b << upper_map, -lower_map;
+  polytope.half_spaces.reserve(6);
+  for (int i = 0; i < 3; ++i) polytope.add(Vec3::Unit(i), upper_map[i]);
+  for (int i = 0; i < 3; ++i) polytope.add(-Vec3::Unit(i), -lower_map[i]);
   return polytope;
 }
 
-Ball chebyshev_ball(std::span<const HalfSpaces> polytopes) {
+Ball chebyshev_ball(std::span<const Faces> polytopes) {
   return LargestBall(polytopes).solve();
 }
 
 Ball chebyshev_ball(const Polytope& polytope) {
-  const HalfSpaces parts[] = {half_spaces(polytope)};
+  const Faces parts[] = {polytope.half_spaces};
   return chebyshev_ball(parts);
 }
 
 Ball chebyshev_ball(const Polytope& a, const Polytope& b) {
-  const HalfSpaces parts[] = {half_spaces(a), half_spaces(b)};
+  const Faces parts[] = {a.half_spaces, b.half_spaces};
   return chebyshev_ball(parts);
 }
 
@@ -208,25 +207,24 @@ Status Corridor::check() const {
   if (polytopes.empty() || waypoints_map.size() != polytopes.size() + 1 ||
       overlaps.size() + 1 != polytopes.size()) {
     return fail(ErrorCode::invalid_input,
-                "a corridor of " + std::to_string(polytopes.size()) + " polytopes has " +
-                    std::to_string(waypoints_map.size()) + " waypoints and " +
-                    std::to_string(overlaps.size()) + " overlaps: n, n + 1 and n - 1 are needed");
+                fmt::format("a corridor of {} polytopes has {} waypoints and {} overlaps: n, n + 1 "
+                            "and n - 1 are needed",
+                            polytopes.size(), waypoints_map.size(), overlaps.size()));
   }
   for (std::size_t k = 0; k < overlaps.size(); ++k) {
     if (!is_finite(overlaps[k].center_map) || !std::isfinite(overlaps[k].radius_m)) {
-      return fail(ErrorCode::invalid_input, "overlap " + std::to_string(k) + " is not finite");
+      return fail(ErrorCode::invalid_input, fmt::format("overlap {} is not finite", k));
     }
   }
   for (std::size_t k = 0; k < polytopes.size(); ++k) {
     if (auto status = polytopes[k].check(); !status) {
-      return fail(status.error().code,
-                  "polytope " + std::to_string(k) + ": " + status.error().message);
+      return fail(status.code(), fmt::format("polytope {}: {}", k, status.error().message));
     }
     for (const std::size_t end : {k, k + 1}) {
       if (!(polytopes[k].violation(waypoints_map[end]) <= 1e-6)) {
         return fail(ErrorCode::invalid_input,
-                    "waypoint " + std::to_string(end) + " " + to_text(waypoints_map[end]) +
-                        " lies outside polytope " + std::to_string(k) + " or is not finite");
+                    fmt::format("waypoint {} {} lies outside polytope {} or is not finite", end,
+                                to_text(waypoints_map[end]), k));
       }
     }
   }

@@ -1,5 +1,7 @@
 #include "goshawk/core/trajectory.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,7 +12,7 @@ namespace {
 
 // De Casteljau: stable, and inside the hull even in floating point.
 template <int N>
-Vec3 bezier(Eigen::Matrix<double, 3, N> points, double tau) {
+Vec3 bezier(Points3<N> points, double tau) {
   for (int level = N - 1; level > 0; --level) {
     for (int i = 0; i < level; ++i) {
       points.col(i) = (1.0 - tau) * points.col(i) + tau * points.col(i + 1);
@@ -21,16 +23,25 @@ Vec3 bezier(Eigen::Matrix<double, 3, N> points, double tau) {
 
 }  // namespace
 
-Eigen::Matrix<double, 3, 5> BezierPiece::velocity_points() const {
+double largest_difference(const FlatState& a, const FlatState& b) {
+  double worst = (a.position - b.position).norm();
+  for (const double d :
+       {(a.velocity - b.velocity).norm(), (a.acceleration - b.acceleration).norm()}) {
+    if (d > worst || std::isnan(d)) worst = d;
+  }
+  return worst;
+}
+
+Points3<5> BezierPiece::velocity_points() const {
   return 5.0 / duration_s * (control_points.rightCols<5>() - control_points.leftCols<5>());
 }
 
-Eigen::Matrix<double, 3, 4> BezierPiece::acceleration_points() const {
+Points3<4> BezierPiece::acceleration_points() const {
   const auto v = velocity_points();
   return 4.0 / duration_s * (v.rightCols<4>() - v.leftCols<4>());
 }
 
-Eigen::Matrix<double, 3, 3> BezierPiece::jerk_points() const {
+Points3<3> BezierPiece::jerk_points() const {
   const auto a = acceleration_points();
   return 3.0 / duration_s * (a.rightCols<3>() - a.leftCols<3>());
 }
@@ -39,6 +50,20 @@ FlatState BezierPiece::sample(double t_s) const {
   const double tau = t_s / duration_s;
   return {bezier<6>(control_points, tau), bezier<5>(velocity_points(), tau),
           bezier<4>(acceleration_points(), tau), bezier<3>(jerk_points(), tau)};
+}
+
+BezierPiece BezierPiece::until(double t_s) const {
+  const double tau = t_s / duration_s;
+  BezierPiece head = *this;
+  head.duration_s = t_s;
+  Points3<6> points = control_points;
+  for (int level = 5; level > 0; --level) {
+    for (int i = 0; i < level; ++i) {
+      points.col(i) = (1.0 - tau) * points.col(i) + tau * points.col(i + 1);
+    }
+    head.control_points.col(6 - level) = points.col(0);
+  }
+  return head;
 }
 
 BezierPiece BezierPiece::between(const FlatState& start, const FlatState& end, double duration_s) {
@@ -104,6 +129,26 @@ FlatState Trajectory::sample(double t_s) const {
   return pieces.back().sample(pieces.back().duration_s);
 }
 
+Trajectory Trajectory::until(double t_s) const {
+  // Shorter than this a last piece would be rounding alone.
+  constexpr double kShortest_s = 1e-9;
+  if (!(t_s > 0.0)) throw std::out_of_range("Trajectory::until a time before the start");
+  Trajectory head;
+  double begin = 0.0;
+  for (const auto& piece : pieces) {
+    const double rest = t_s - begin;
+    if (rest <= kShortest_s && !head.pieces.empty()) return head;
+    if (rest < piece.duration_s) {
+      head.pieces.push_back(piece.until(rest));
+      return head;
+    }
+    head.pieces.push_back(piece);
+    begin += piece.duration_s;
+  }
+  if (t_s > begin + kShortest_s) throw std::out_of_range("Trajectory::until a time after the end");
+  return head;
+}
+
 Trajectory::Peaks Trajectory::peaks(int samples_per_piece) const {
   if (samples_per_piece < 1) throw std::invalid_argument("Trajectory::peaks of no samples");
   // Written so that NaN stays: a curve of NaN is not one at rest.
@@ -126,12 +171,12 @@ Status Trajectory::check() const {
   for (std::size_t k = 0; k < pieces.size(); ++k) {
     if (!pieces[k].control_points.allFinite()) {
       return fail(ErrorCode::invalid_input,
-                  "piece " + std::to_string(k) + " has a control point that is not finite");
+                  fmt::format("piece {} has a control point that is not finite", k));
     }
     if (!(std::isfinite(pieces[k].duration_s) && pieces[k].duration_s > 0.0)) {
-      return fail(ErrorCode::invalid_input, "piece " + std::to_string(k) + " lasts " +
-                                                std::to_string(pieces[k].duration_s) +
-                                                " s: a duration must be finite and above zero");
+      return fail(ErrorCode::invalid_input,
+                  fmt::format("piece {} lasts {:.3g} s: a duration must be finite and above zero",
+                              k, pieces[k].duration_s));
     }
   }
   return success();

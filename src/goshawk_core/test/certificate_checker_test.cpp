@@ -1,4 +1,4 @@
-// Two implementations that share nothing must say the same: certify() and the one-header checker.
+// Two implementations that share nothing must say the same: measure() and the one-header checker.
 #include "goshawk/certificate_checker.hpp"
 
 #include <gtest/gtest.h>
@@ -9,13 +9,13 @@
 namespace goshawk {
 namespace {
 
-Vec3 random_vector(Random& random, double size) {
+Vec3 any_vector(Random& random, double size) {
   return Vec3(random.uniform(-size, size), random.uniform(-size, size),
               random.uniform(-size, size));
 }
 
 FlatState random_state(Random& random) {
-  return {random_vector(random, 3.0), random_vector(random, 2.0), random_vector(random, 2.0), {}};
+  return {any_vector(random, 3.0), any_vector(random, 2.0), any_vector(random, 2.0), {}};
 }
 
 struct Case {
@@ -38,9 +38,9 @@ Case random_case(Random& random) {
   }
   c.goal = at;
   for (int i = 0; i < 2; ++i) {
-    c.polytopes.push_back(Polytope::box(random_vector(random, 1.0) - Vec3(6, 6, 6),
-                                        random_vector(random, 1.0) + Vec3(6, 6, 6)));
-    c.polytopes.back().add(random_vector(random, 1.0).normalized(), random.uniform(2.0, 8.0));
+    c.polytopes.push_back(Polytope::box(any_vector(random, 1.0) - Vec3(6, 6, 6),
+                                        any_vector(random, 1.0) + Vec3(6, 6, 6)));
+    c.polytopes.back().add(any_vector(random, 1.0).normalized(), random.uniform(2.0, 8.0));
   }
   c.limits = {.v_max_m_s = random.uniform(1.0, 30.0),
               .a_max_m_s2 = random.uniform(1.0, 200.0),
@@ -70,7 +70,11 @@ goshawk_checker::Verdict second_opinion(const Case& c) {
   }
   std::vector<goshawk_checker::Polytope> polytopes;
   for (const Polytope& p : c.polytopes) {
-    polytopes.push_back({{p.A.data(), p.A.data() + p.A.size()}, {p.b.begin(), p.b.end()}});
+    auto& polytope = polytopes.emplace_back();
+    for (const HalfSpace& face : p.half_spaces) {
+      polytope.normals.insert(polytope.normals.end(), face.normal.begin(), face.normal.end());
+      polytope.offsets.push_back(face.offset_m);
+    }
   }
   const Limits& l = c.limits;
   return goshawk_checker::check(pieces, polytopes,
@@ -79,23 +83,23 @@ goshawk_checker::Verdict second_opinion(const Case& c) {
                                 plain(c.start), plain(c.goal));
 }
 
-TEST(CertificateChecker, AgreesWithCertifyInEveryFamily) {
+TEST(CertificateChecker, AgreesWithMeasureInEveryFamily) {
   Random random(17);
   int held = 0;
   int braked = 0;
   for (int i = 0; i < 3000; ++i) {
     SCOPED_TRACE(i);
     const Case c = random_case(random);
-    const Certificate a = certify(c.trajectory, c.polytopes, c.limits, c.start, c.goal);
+    const Certificate a = measure(c.trajectory, c.polytopes, c.limits, c.start, c.goal);
     const auto b = second_opinion(c);
     const auto near = [](double x, double y) { EXPECT_NEAR(x, y, 1e-9 * (1.0 + std::abs(x))); };
     near(a.position_m, b.position);
     near(a.velocity_m_s, b.velocity);
     near(a.acceleration_m_s2, b.acceleration);
     near(a.jerk_m_s3, b.jerk);
-    near(a.joint_position_m, b.joint_position);
-    near(a.joint_velocity_m_s, b.joint_velocity);
-    near(a.joint_acceleration_m_s2, b.joint_acceleration);
+    near(a.continuity_position_m, b.joint_position);
+    near(a.continuity_velocity_m_s, b.joint_velocity);
+    near(a.continuity_acceleration_m_s2, b.joint_acceleration);
     near(a.start_m, b.start);
     near(a.goal_m, b.goal);
     EXPECT_EQ(a.holds(), b.holds());
@@ -124,7 +128,7 @@ TEST(CertificateChecker, NonsenseDoesNotHold) {
   EXPECT_TRUE(bad([](Case& c) { c.trajectory.pieces[0].control_points(1, 2) = NAN; }));
   EXPECT_TRUE(bad([](Case& c) { c.polytopes[0] = c.polytopes[1] = {}; }));
   EXPECT_TRUE(bad([](Case& c) {
-    for (Polytope& p : c.polytopes) p.A(0, 0) = NAN;
+    for (Polytope& p : c.polytopes) p.half_spaces[0].normal[0] = NAN;
   }));
   EXPECT_TRUE(bad([](Case& c) { c.limits.v_max_m_s = -1.0; }));
   EXPECT_TRUE(bad([](Case& c) { c.goal.position.x() += 0.1; }));

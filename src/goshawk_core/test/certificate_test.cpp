@@ -20,8 +20,12 @@ struct Plan {
   FlatState start;
   FlatState goal;
 
-  Certificate certificate() const { return certify(trajectory, polytopes, limits, start, goal); }
+  Certificate certificate() const { return measure(trajectory, polytopes, limits, start, goal); }
 };
+
+void shrink(Polytope& polytope, double by_m) {
+  for (HalfSpace& face : polytope.half_spaces) face.offset_m -= by_m;
+}
 
 // Smooth through three pieces, inside wide boxes and wide limits: every family holds.
 Plan good_plan(Random& random) {
@@ -54,7 +58,8 @@ TEST(Certificate, HoldsForASmoothTrajectoryInsideItsLimits) {
     ASSERT_LT(c.position_m, 0.0);
     ASSERT_LT(c.velocity_m_s, 0.0);
     ASSERT_LT(c.acceleration_m_s2, 0.0);
-    ASSERT_LT(c.joint_position_m + c.joint_velocity_m_s + c.joint_acceleration_m_s2, 1e-9);
+    ASSERT_LT(c.continuity_position_m + c.continuity_velocity_m_s + c.continuity_acceleration_m_s2,
+              1e-9);
   }
 }
 
@@ -65,7 +70,7 @@ TEST(Certificate, BoundsWhatDenseSamplingFinds) {
     plan.limits.norm = n % 2 == 0 ? LimitNorm::euclidean : LimitNorm::per_axis;
     plan.limits.v_max_m_s = random.uniform(0.5, 5.0);
     plan.limits.a_max_m_s2 = random.uniform(0.5, 20.0);
-    for (auto& polytope : plan.polytopes) polytope.b.array() -= random.uniform(0.0, 5.5);
+    for (auto& polytope : plan.polytopes) shrink(polytope, random.uniform(0.0, 5.5));
     const Certificate c = plan.certificate();
     const auto size = [&](const Vec3& v) {
       return n % 2 == 0 ? v.norm() : v.cwiseAbs().maxCoeff();
@@ -101,7 +106,7 @@ TEST(Certificate, MeasuresEachViolation) {
     EXPECT_EQ(c.worst().rfind(family + " is violated", 0), 0U) << c.worst();
   };
   // The start is 5 m inside each face of its box: 5.5 m off puts it 0.5 m outside.
-  const auto wall = broken([](Plan& p) { p.polytopes[0].b.array() -= 5.5; });
+  const auto wall = broken([](Plan& p) { shrink(p.polytopes[0], 5.5); });
   EXPECT_NEAR(wall.position_m, 0.5, 0.5);
   EXPECT_GE(wall.position_m, 0.5 - 1e-12);
   names(wall, "position");
@@ -113,14 +118,14 @@ TEST(Certificate, MeasuresEachViolation) {
   names(goal, "goal");
   const auto jump =
       broken([](Plan& p) { p.trajectory.pieces[1].control_points.colwise() += Vec3(0.01, 0, 0); });
-  EXPECT_NEAR(jump.joint_position_m, 0.01, 1e-12);
-  names(jump, "joint position");
+  EXPECT_NEAR(jump.continuity_position_m, 0.01, 1e-12);
+  names(jump, "position continuity");
   const auto kink = broken([](Plan& p) { p.trajectory.pieces[1].duration_s *= 1.1; });
-  EXPECT_GT(kink.joint_velocity_m_s, 0.05);
-  EXPECT_GT(kink.joint_acceleration_m_s2, 0.0);
+  EXPECT_GT(kink.continuity_velocity_m_s, 0.05);
+  EXPECT_GT(kink.continuity_acceleration_m_s2, 0.0);
   EXPECT_FALSE(kink.holds());
   const auto fast = broken([](Plan& p) { p.limits.v_max_m_s = 0.1; });
-  EXPECT_GT(fast.velocity_m_s, 0.9);  // it passes its joints with more than 1 m/s
+  EXPECT_GT(fast.velocity_m_s, 0.9);  // it passes its knots with more than 1 m/s
   names(fast, "velocity");
   const auto hard = broken([](Plan& p) { p.limits.a_max_m_s2 = 0.1; });
   EXPECT_GT(hard.acceleration_m_s2, 0.0);
@@ -148,11 +153,11 @@ TEST(Certificate, EuclideanLimitsAreTighterThanPerAxis) {
 TEST(Certificate, ToleratesWhatTheToleranceSays) {
   Certificate c;
   EXPECT_TRUE(c.holds());
-  c.joint_velocity_m_s = 1e-5;
+  c.continuity_velocity_m_s = 1e-5;
   EXPECT_FALSE(c.holds());
   EXPECT_TRUE(c.holds(1e-4));
   EXPECT_FALSE(c.holds(NAN));
-  EXPECT_EQ(c.worst(), "joint velocity is violated by 1e-05");
+  EXPECT_EQ(c.worst(), "velocity continuity is violated by 1e-05");
 }
 
 // A certificate that ignores one NaN lets a vehicle fly anywhere: every number that goes in is
@@ -170,13 +175,13 @@ TEST(Certificate, DoesNotHoldForNaNInAnyNumberOfAnyPiece) {
       Plan plan = good;
       plan.trajectory.pieces[k].duration_s = bad;
       ASSERT_FALSE(plan.certificate().holds()) << "duration of piece " << k;
-      for (int face = 0; face < 6; ++face) {
+      for (std::size_t face = 0; face < 6; ++face) {
         plan = good;
-        plan.polytopes[k].b[face] = bad;
+        plan.polytopes[k].half_spaces[face].offset_m = bad;
         ASSERT_FALSE(plan.certificate().holds()) << "offset " << face;
         for (int axis = 0; axis < 3; ++axis) {
           plan = good;
-          plan.polytopes[k].A(face, axis) = bad;
+          plan.polytopes[k].half_spaces[face].normal[axis] = bad;
           ASSERT_FALSE(plan.certificate().holds()) << "normal " << face;
         }
       }
@@ -239,15 +244,25 @@ TEST(Certificate, ThrowsForAPolytopeThatIsNotThereAndForNoPieces) {
   EXPECT_THROW((void)plan.certificate(), std::logic_error);
 }
 
-TEST(Limits, CheckNamesEveryFault) {
-  EXPECT_TRUE(Limits{}.check().ok());
-  for (const double bad : {0.0, -1.0, double(NAN), double(INFINITY)}) {
-    const auto status = Limits{.v_max_m_s = bad, .a_max_m_s2 = bad}.check();
-    EXPECT_EQ(status.code(), ErrorCode::invalid_limits);
-    EXPECT_NE(status.error().message.find("v_max_m_s is"), std::string::npos);
-    EXPECT_NE(status.error().message.find("a_max_m_s2 is"), std::string::npos);
-    EXPECT_EQ(Limits{.a_max_m_s2 = bad}.check().error().message.find("v_max"), std::string::npos);
-  }
+// A polytope that holds for a time: a piece may neither begin before nor end after it.
+TEST(Certificate, DoesNotHoldForAPieceThatOutlastsItsPolytope) {
+  Random random(8);
+  Plan plan = good_plan(random);
+  EXPECT_EQ(plan.certificate().validity_s, 0.0) << "no polytope has an interval";
+  const double begin_s = plan.trajectory.pieces[0].duration_s;
+  const double end_s = begin_s + plan.trajectory.pieces[1].duration_s;
+  const auto with = [&](double from_s, double until_s) {
+    plan.polytopes[1].valid_from_s = from_s;
+    plan.polytopes[1].valid_until_s = until_s;
+    return plan.certificate();
+  };
+  EXPECT_TRUE(with(begin_s, end_s).holds());
+  EXPECT_NEAR(with(begin_s - 0.5, end_s + 0.25).validity_s, -0.25, 1e-12);
+  EXPECT_NEAR(with(begin_s - 0.5, end_s - 0.125).validity_s, 0.125, 1e-12);
+  EXPECT_NEAR(with(begin_s + 0.0625, end_s + 1.0).validity_s, 0.0625, 1e-12);
+  EXPECT_EQ(with(begin_s - 0.5, end_s - 0.125).worst(), "validity is violated by 0.125");
+  EXPECT_FALSE(with(begin_s, end_s - 0.125).holds());
+  EXPECT_FALSE(with(0.0, NAN).holds());
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ Polytope random_polytope(int extra_faces, double depth, Random& random) {
 
 Polytope both(const Polytope& a, const Polytope& b) {
   Polytope joined = a;
-  for (int i = 0; i < b.faces(); ++i) joined.add(b.A.row(i).transpose(), b.b[i]);
+  for (const HalfSpace& face : b.half_spaces) joined.half_spaces.push_back(face);
   return joined;
 }
 
@@ -55,8 +55,8 @@ double brute_force_radius(const Polytope& polytope) {
           Eigen::Vector4d bounds;
           int n = 0;
           for (const int face : {i, j, k, l}) {
-            rows.row(n) << polytope.A.row(face), 1.0;
-            bounds[n++] = polytope.b[face];
+            rows.row(n) << polytope.A().row(face), 1.0;
+            bounds[n++] = polytope.b()[face];
           }
           if (std::abs(rows.determinant()) < 1e-9) continue;
           const Eigen::Vector4d x = rows.partialPivLu().solve(bounds);
@@ -89,11 +89,11 @@ TEST(Polytope, AddsFacesOneByOne) {
 TEST(Polytope, ViolationOfNaNIsNaNWhereverItStands) {
   for (int face = 0; face < 6; ++face) {
     Polytope polytope = Polytope::box(Vec3(0, 0, 0), Vec3(1, 1, 1));
-    polytope.b[face] = NAN;
+    polytope.half_spaces[std::size_t(face)].offset_m = NAN;
     EXPECT_TRUE(std::isnan(polytope.violation(Vec3(0.5, 0.5, 0.5)))) << face;
     EXPECT_TRUE(std::isnan(polytope.violation(Vec3(9, 9, 9)))) << face;
     polytope = Polytope::box(Vec3(0, 0, 0), Vec3(1, 1, 1));
-    polytope.A(face, face % 3) = NAN;
+    polytope.half_spaces[std::size_t(face)].normal[face % 3] = NAN;
     EXPECT_TRUE(std::isnan(polytope.violation(Vec3(0.5, 0.5, 0.5)))) << face;
   }
   for (int axis = 0; axis < 3; ++axis) {
@@ -106,8 +106,6 @@ TEST(Polytope, ViolationOfNaNIsNaNWhereverItStands) {
 TEST(Polytope, CheckRefusesWhatIsNoPolytope) {
   EXPECT_EQ(Polytope().check().code(), ErrorCode::invalid_input);
   Polytope polytope = Polytope::box(Vec3(0, 0, 0), Vec3(1, 1, 1));
-  polytope.b.conservativeResize(5);
-  EXPECT_EQ(polytope.check().code(), ErrorCode::invalid_input);
   polytope = Polytope::box(Vec3(0, 0, 0), Vec3(1, NAN, 1));
   EXPECT_EQ(polytope.check().code(), ErrorCode::invalid_input);
   polytope = Polytope::box(Vec3(0, 0, 0), Vec3(1, kInfinity, 1));
@@ -115,6 +113,54 @@ TEST(Polytope, CheckRefusesWhatIsNoPolytope) {
   polytope = Polytope::box(Vec3(0, 0, 0), Vec3(1, 1, 1));
   polytope.add(Vec3(0, 0, 2), 1.0);
   EXPECT_EQ(polytope.check().code(), ErrorCode::invalid_input);
+}
+
+TEST(Polytope, ShowsItsFacesAsAMatrixAndAVector) {
+  Random random(9);
+  const Polytope polytope = random_polytope(5, 1.0, random);
+  ASSERT_EQ(polytope.A().rows(), 11);
+  ASSERT_EQ(polytope.b().size(), 11);
+  for (int i = 0; i < 11; ++i) {
+    EXPECT_EQ(Vec3(polytope.A().row(i)), polytope.half_spaces[std::size_t(i)].normal);
+    EXPECT_EQ(polytope.b()[i], polytope.half_spaces[std::size_t(i)].offset_m);
+  }
+  for (int n = 0; n < 100; ++n) {
+    const Vec3 p(random.uniform(-20, 20), random.uniform(-20, 20), random.uniform(-5, 9));
+    EXPECT_NEAR((polytope.A() * p - polytope.b()).maxCoeff(), polytope.violation(p), 1e-12);
+  }
+  EXPECT_EQ(Polytope().A().rows(), 0);
+  EXPECT_EQ(Polytope().b().size(), 0);
+}
+
+TEST(Polytope, HoldsAlwaysOrInAnIntervalThatEndsAfterItBegins) {
+  Polytope polytope = Polytope::box(Vec3(0, 0, 0), Vec3(1, 1, 1));
+  EXPECT_TRUE(polytope.always_valid());
+  const auto check = [&](double from_s, double until_s) {
+    polytope.valid_from_s = from_s;
+    polytope.valid_until_s = until_s;
+    EXPECT_FALSE(polytope.always_valid());
+    return polytope.check().code();
+  };
+  EXPECT_EQ(check(0.0, 2.5), ErrorCode::ok);
+  EXPECT_EQ(check(-1.0, 0.0), ErrorCode::ok);
+  for (const auto& [from_s, until_s] : {std::pair{2.0, 1.0}, {1.0, 1.0}, {1.0, 0.0}}) {
+    EXPECT_EQ(check(from_s, until_s), ErrorCode::invalid_input) << from_s << " to " << until_s;
+  }
+  for (const double bad : {double(NAN), kInfinity, -kInfinity}) {
+    EXPECT_EQ(check(bad, 1.0), ErrorCode::invalid_input);
+    EXPECT_EQ(check(0.0, bad), ErrorCode::invalid_input);
+  }
+}
+
+TEST(HalfSpace, MeasuresTheDistanceToItsPlane) {
+  const HalfSpace face{Vec3(0, 0.6, 0.8), 2.0};
+  EXPECT_DOUBLE_EQ(face.distance_m(Vec3::Zero()), -2.0);
+  EXPECT_DOUBLE_EQ(face.distance_m(3.0 * face.normal), 1.0);
+  EXPECT_DOUBLE_EQ(face.distance_m(3.0 * face.normal + Vec3(5, 0, 0)), 1.0);
+  EXPECT_TRUE(std::isnan(face.distance_m(Vec3(0, NAN, 0))));
+  EXPECT_TRUE(face.is_finite());
+  EXPECT_FALSE((HalfSpace{Vec3(0, NAN, 1), 0.0}.is_finite()));
+  EXPECT_FALSE((HalfSpace{Vec3(0, 0, 1), kInfinity}.is_finite()));
 }
 
 TEST(ChebyshevBall, OfABoxHasHalfItsLeastEdge) {
@@ -147,7 +193,7 @@ TEST(ChebyshevBall, IsInsideAndLargestForTwoOverlappingPolytopes) {
     // Moved near the first, so that some overlap and some do not.
     const Vec3 shift = chebyshev_ball(a).center_map - chebyshev_ball(b).center_map +
                        random.uniform(0.0, 4.0) * random_unit(random);
-    b.b += b.A * shift;
+    for (HalfSpace& face : b.half_spaces) face.offset_m += face.normal.dot(shift);
     const Ball ball = chebyshev_ball(a, b);
     ASSERT_GE(std::min(room(a, ball.center_map), room(b, ball.center_map)), ball.radius_m - 1e-12);
     ASSERT_NEAR(ball.radius_m, brute_force_radius(both(a, b)), 1e-7) << "pair " << n;
@@ -180,7 +226,9 @@ TEST(ChebyshevBall, StandsRepeatedAndAlmostParallelFaces) {
     for (int i = 0; i < 30; ++i) {
       const int face = random.below(6);
       const double tilt = std::pow(10.0, -random.uniform(3.0, 16.0));
-      const Vec3 normal = (Vec3(polytope.A.row(face)) + tilt * random_unit(random)).normalized();
+      const Vec3 normal =
+          (polytope.half_spaces[std::size_t(face)].normal + tilt * random_unit(random))
+              .normalized();
       polytope.add(normal, normal.dot(Vec3(2, 2, 1)) + (face % 3 == 2 ? 1.0 : 2.0));
     }
     const Ball ball = chebyshev_ball(polytope);
@@ -191,8 +239,8 @@ TEST(ChebyshevBall, StandsRepeatedAndAlmostParallelFaces) {
 
 TEST(ChebyshevBall, TellsByHowMuchAnEmptyPolytopeMisses) {
   Polytope gap = Polytope::box(Vec3(0, 0, 0), Vec3(4, 4, 4));
-  gap.b[0] = 1.0;  // x <= 1 and x >= 3: a gap of 2
-  gap.b[3] = -3.0;
+  gap.half_spaces[0].offset_m = 1.0;  // x <= 1 and x >= 3: a gap of 2
+  gap.half_spaces[3].offset_m = -3.0;
   const Ball ball = chebyshev_ball(gap);
   EXPECT_NEAR(ball.radius_m, -1.0, 1e-9);
   EXPECT_NEAR(ball.center_map.x(), 2.0, 1e-9);
@@ -226,19 +274,15 @@ TEST(ChebyshevBall, OfWhatIsNotFiniteHoldsNothing) {
   for (const double bad : {double(NAN), kInfinity, -kInfinity}) {
     for (int face = 0; face < 6; ++face) {
       Polytope polytope = Polytope::box(Vec3(0, 0, 0), Vec3(1, 1, 1));
-      polytope.b[face] = bad;
+      polytope.half_spaces[std::size_t(face)].offset_m = bad;
       EXPECT_EQ(chebyshev_ball(polytope).radius_m, -kInfinity);
-      polytope.b[face] = 1.0;
-      polytope.A(face, 0) = bad;
+      polytope.half_spaces[std::size_t(face)].offset_m = 1.0;
+      polytope.half_spaces[std::size_t(face)].normal[0] = bad;
       EXPECT_EQ(chebyshev_ball(polytope).radius_m, -kInfinity);
       EXPECT_EQ(chebyshev_ball(Polytope::box(Vec3(0, 0, 0), Vec3(1, 1, 1)), polytope).radius_m,
                 -kInfinity);
     }
   }
-  Polytope torn = Polytope::box(Vec3(0, 0, 0), Vec3(1, 1, 1));
-  torn.b.conservativeResize(7);
-  torn.b[6] = 0.0;
-  EXPECT_EQ(chebyshev_ball(torn).radius_m, -kInfinity);
 }
 
 Corridor two_boxes() {
@@ -261,7 +305,7 @@ TEST(Corridor, ChecksItsSizesAndItsWaypoints) {
   corridor.overlaps.clear();
   EXPECT_EQ(corridor.check().code(), ErrorCode::invalid_input);
   corridor = two_boxes();
-  corridor.polytopes[1].A(2, 1) = NAN;
+  corridor.polytopes[1].half_spaces[2].normal[1] = NAN;
   EXPECT_EQ(corridor.check().code(), ErrorCode::invalid_input);
   corridor = two_boxes();
   corridor.waypoints_map[1] = Vec3(0.5, 0.5, 0.5);  // in the first box only

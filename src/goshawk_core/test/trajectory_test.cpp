@@ -224,6 +224,60 @@ TEST(Trajectory, SampleThrowsBeyondItsEndsAndForNaN) {
   EXPECT_THROW((void)Trajectory{}.sample(0.0), std::logic_error);
 }
 
+TEST(BezierPiece, UntilATimeIsTheSameCurve) {
+  Random random(11);
+  for (int n = 0; n < 100; ++n) {
+    BezierPiece piece = random_piece(random);
+    piece.polytope = n;
+    const double end_s = piece.duration_s * random.uniform(0.01, 1.0);
+    const BezierPiece head = piece.until(end_s);
+    EXPECT_EQ(head.duration_s, end_s);
+    EXPECT_EQ(head.polytope, n);
+    for (int i = 0; i <= 10; ++i) {
+      const double t = end_s * i / 10.0;
+      ASSERT_LT((head.sample(t).position - piece.sample(t).position).norm(), 1e-12);
+      ASSERT_LT((head.sample(t).velocity - piece.sample(t).velocity).norm(), 1e-9 / end_s);
+    }
+  }
+  const BezierPiece piece = random_piece(random);
+  EXPECT_EQ(piece.until(piece.duration_s).control_points, piece.control_points);
+}
+
+TEST(Trajectory, UntilATimeKeepsThePiecesBeforeIt) {
+  Random random(12);
+  const Trajectory trajectory = random_trajectory(4, random);
+  const double knot_s = trajectory.pieces[0].duration_s + trajectory.pieces[1].duration_s;
+  EXPECT_EQ(trajectory.until(knot_s).pieces.size(), 2u) << "no piece of no length follows";
+  EXPECT_EQ(trajectory.until(knot_s + 1e-12).pieces.size(), 2u);
+  EXPECT_EQ(trajectory.until(trajectory.duration_s()).pieces.size(), 4u);
+  const Trajectory head = trajectory.until(knot_s + 0.1);
+  ASSERT_EQ(head.pieces.size(), 3u);
+  EXPECT_NEAR(head.duration_s(), knot_s + 0.1, 1e-12);
+  for (double t = 0.05; t < head.duration_s(); t += 0.05) {
+    ASSERT_LT((head.sample(t).position - trajectory.sample(t).position).norm(), 1e-12) << t;
+  }
+  for (const double outside : {0.0, -1.0, double(NAN), trajectory.duration_s() + 0.1}) {
+    EXPECT_THROW((void)trajectory.until(outside), std::out_of_range) << outside;
+  }
+}
+
+TEST(FlatState, DifferenceIsTheLargestOfItsPartsAndNaNStays) {
+  Random random(13);
+  const auto apart = [](Vec3 position, Vec3 velocity, Vec3 acceleration) {
+    return largest_difference({position, velocity, acceleration}, {});
+  };
+  EXPECT_EQ(apart(Vec3(3, 4, 0), Vec3(1, 0, 0), Vec3(0, 2, 0)), 5.0);
+  EXPECT_EQ(apart(Vec3(0, 1, 0), Vec3(0, 0, -6), Vec3(0, 2, 0)), 6.0);
+  EXPECT_EQ(apart(Vec3(0, 1, 0), Vec3(0, 0, -6), Vec3(0, -8, 0)), 8.0);
+  for (int part = 0; part < 3; ++part) {
+    Vec3 v[3] = {random_vector(random, 1.0), random_vector(random, 1.0), Vec3(9, 9, 9)};
+    v[part].y() = NAN;
+    EXPECT_TRUE(std::isnan(apart(v[0], v[1], v[2]))) << part;
+    EXPECT_FALSE((FlatState{v[0], v[1], v[2]}.is_finite())) << part;
+  }
+  EXPECT_TRUE(FlatState{}.is_finite());
+}
+
 TEST(Trajectory, PeaksGrowWithTheSamplesUpToTheHull) {
   Random random(10);
   for (int n = 0; n < 50; ++n) {

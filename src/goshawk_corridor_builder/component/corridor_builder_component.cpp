@@ -3,13 +3,14 @@
 #include "goshawk/corridor_builder/corridor_builder.hpp"
 #include "goshawk/corridor_builder/raw_map.hpp"
 #include "goshawk/runtime/component.hpp"
-#include "goshawk/runtime/map_subscription.hpp"
-#include "goshawk/runtime/stage.hpp"
+#include "goshawk/stage/intake.hpp"
+#include "goshawk/stage/map_subscription.hpp"
 
 namespace goshawk::corridor_builder {
 namespace {
 
 using namespace goshawk::runtime;
+using namespace goshawk::stage;
 namespace msg = goshawk_msgs::msg;
 
 /// Before the raw map of a version has come, its grown one serves: the same safety, less room.
@@ -105,8 +106,7 @@ class CorridorBuilderComponent : public Component {
     m.min_overlap_radius(corridor.min_overlap_radius_m());
     m.compute_ns(compute_ns);
     m.header(conversions::make_header(node_.now_ns()));
-    if (auto status = publisher_.publish(m); !status)
-      reporter_.failed(request.id(), status.error());
+    reporter_.send(publisher_, m, request.id());
   }
 
   void report(std::uint64_t id, const Corridor& corridor, const Timing& timing) {

@@ -4,8 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "faces.hpp"
-#include "goshawk/core/vector.hpp"
+#include "goshawk/core/polytope.hpp"
 
 namespace goshawk::corridor_builder {
 
@@ -31,8 +30,8 @@ class Chain {
   std::vector<Ball> overlaps;
 
   std::size_t size() const { return count_; }
-  Faces& operator[](std::size_t k) { return polytopes_[k]; }
-  const Faces& operator[](std::size_t k) const { return polytopes_[k]; }
+  Polytope& operator[](std::size_t k) { return polytopes_[k]; }
+  const Polytope& operator[](std::size_t k) const { return polytopes_[k]; }
 
   void clear() {
     joints_map.clear();
@@ -40,8 +39,8 @@ class Chain {
     count_ = 0;
   }
   /// @return the new last polytope, to be overwritten
-  Faces& append() {
-    if (count_ == polytopes_.size()) polytopes_.emplace_back().reserve(kManyFaces);
+  Polytope& append() {
+    if (count_ == polytopes_.size()) polytopes_.emplace_back().half_spaces.reserve(kManyFaces);
     return polytopes_[count_++];
   }
   void drop_last() { --count_; }
@@ -54,7 +53,7 @@ class Chain {
  private:
   static constexpr std::size_t kManyFaces = 64;  // more are rare: polytopes change places
 
-  std::vector<Faces> polytopes_;  // the first count_
+  std::vector<Polytope> polytopes_;  // the first count_
   std::size_t count_ = 0;
 };
 

@@ -118,14 +118,11 @@ void CorridorBuilder::Impl::improve(double resolution_m) {
 
 // Into memory that the caller keeps.
 void CorridorBuilder::Impl::write(Corridor& corridor) const {
-  using Normals = Eigen::Map<const Polytope::Normals>;
   corridor.waypoints_map.assign(chain_.joints_map.begin(), chain_.joints_map.end());
   corridor.overlaps.assign(chain_.overlaps.begin(), chain_.overlaps.end());
   corridor.polytopes.resize(chain_.size());
   for (std::size_t k = 0; k < chain_.size(); ++k) {
-    const HalfSpaces faces = chain_[k].view();
-    corridor.polytopes[k].A = Normals(faces.normals, faces.count, 3);
-    corridor.polytopes[k].b = Eigen::Map<const Eigen::VectorXd>(faces.offsets, faces.count);
+    corridor.polytopes[k] = chain_[k];
   }
 }
 
@@ -192,10 +189,10 @@ Status CorridorBuilder::Impl::check_path(const VoxelGrid& grid, std::span<const 
 // Obstacles that touch each other leave a path between them, but no room to fly.
 Status CorridorBuilder::Impl::check_room(std::span<const Vec3> path) const {
   const char* squeezes = ": the path squeezes between obstacles that touch; search it without";
-  const Faces& first = chain_[0];
+  const Polytope& first = chain_[0];
   const Vec3 middle = 0.5 * (chain_.joints_map[0] + chain_.joints_map[1]);
-  if (chain_.overlaps.empty() && first.room(middle) < kLeastOverlap_m &&
-      !(largest_ball(first).radius_m > kLeastOverlap_m)) {
+  if (chain_.overlaps.empty() && -first.violation(middle) < kLeastOverlap_m &&
+      !(chebyshev_ball(first).radius_m > kLeastOverlap_m)) {
     return fail(ErrorCode::segment_blocked, segment_text(path, 0) + " has no room" + squeezes);
   }
   for (std::size_t k = 0; k < chain_.overlaps.size(); ++k) {

@@ -10,12 +10,13 @@ constexpr double kSolverRounding = 1e-6;  // [voxel edges] balls are found by a 
 
 // How far from `from` (0) to `center` (1) a point has at least `clearance` to every face: slacks
 // are linear along the way.
-double needed_step(const Faces& polytope, const Vec3& from, const Vec3& center, double clearance) {
+double needed_step(const Polytope& polytope, const Vec3& from, const Vec3& center,
+                   double clearance) {
   double step = 0.0;
-  for (std::size_t i = 0; i < polytope.offsets.size(); ++i) {
-    const double here = polytope.slack(i, from);
+  for (const HalfSpace& face : polytope.half_spaces) {
+    const double here = -face.distance_m(from);
     if (here >= clearance) continue;
-    const double there = polytope.slack(i, center);
+    const double there = -face.distance_m(center);
     step = std::max(step, there > clearance ? (clearance - here) / (there - here) : 1.0);
   }
   return std::min(step, 1.0);
@@ -46,20 +47,21 @@ void drop_inner(std::size_t k, const Ball& shortcut, Chain& chain) {
 void measure_overlaps(Chain& chain) {
   chain.overlaps.clear();
   for (std::size_t k = 0; k + 1 < chain.size(); ++k) {
-    chain.overlaps.push_back(largest_ball(chain[k], chain[k + 1]));
+    chain.overlaps.push_back(chebyshev_ball(chain[k], chain[k + 1]));
   }
 }
 
 void drop_covered(double resolution_m, double start_room_m, double goal_room_m, Chain& chain) {
-  while (chain.size() > 1 && chain[1].room(chain.joints_map.front()) >= start_room_m) {
+  while (chain.size() > 1 && -chain[1].violation(chain.joints_map.front()) >= start_room_m) {
     drop_first(chain);
   }
-  while (chain.size() > 1 && chain[chain.size() - 2].room(chain.joints_map.back()) >= goal_room_m) {
+  while (chain.size() > 1 &&
+         -chain[chain.size() - 2].violation(chain.joints_map.back()) >= goal_room_m) {
     drop_last(chain);
   }
   const double half_voxel_m = (kHalfVoxel - kSolverRounding) * resolution_m;
   for (std::size_t k = 1; k + 1 < chain.size();) {
-    const Ball shortcut = largest_ball(chain[k - 1], chain[k + 1]);
+    const Ball shortcut = chebyshev_ball(chain[k - 1], chain[k + 1]);
     const double before = std::min(chain.overlaps[k - 1].radius_m, chain.overlaps[k].radius_m);
     if (shortcut.radius_m >= std::max(half_voxel_m, kNearlyAsGood * before)) {
       drop_inner(k, shortcut, chain);

@@ -76,7 +76,7 @@ std::optional<Blockage> PathWrapper::wrap(const VoxelGrid& grown, const Obstacle
 // @return the point to go on from
 std::size_t PathWrapper::join(std::size_t i, Chain& chain) {
   const std::size_t last = chain.size() - 1;
-  if (last > 0) chain.overlaps.push_back(largest_ball(chain[last - 1], chain[last]));
+  if (last > 0) chain.overlaps.push_back(chebyshev_ball(chain[last - 1], chain[last]));
   if (config_.drop_covered) i = covered_until(chain[last], i);
   chain.joints_map.push_back((*points_)[i].p_map);
   return i;
@@ -195,13 +195,13 @@ void PathWrapper::insert(std::size_t i) {
 
 // Parts of the path that a polytope holds, with the balls around their ends, need none of their
 // own. @return the point where it is left
-std::size_t PathWrapper::covered_until(const Faces& polytope, std::size_t end) const {
+std::size_t PathWrapper::covered_until(const Polytope& polytope, std::size_t end) const {
   const double resolution_m = grown_->geometry.resolution_m;
   for (; end + 1 < points_->size(); ++end) {
     const PathPoint& next = (*points_)[end + 1];
     const bool goal = end + 2 == points_->size();
     const double ball = (goal ? next.wanted : kHalfVoxel) - kRounding;
-    if (polytope.room(next.p_map) < ball * resolution_m) break;
+    if (-polytope.violation(next.p_map) < ball * resolution_m) break;
   }
   return end;
 }

@@ -40,7 +40,7 @@ class PathWrapper {
   void bend(std::size_t i, const Segment& segment);
   bool walk(std::size_t i);
   void insert(std::size_t i);
-  std::size_t covered_until(const Faces& polytope, std::size_t end) const;
+  std::size_t covered_until(const Polytope& polytope, std::size_t end) const;
 
   Config config_;
   SegmentPolytope segment_polytope_;

@@ -43,7 +43,7 @@ VoxelBox widened(const VoxelBox& box, int by, const Index3& size) {
 }  // namespace
 
 Separation SegmentPolytope::build(const ObstacleLayers& map, const Segment& segment,
-                                  bool stop_when_thin, const Margins& margins, Faces& polytope) {
+                                  bool stop_when_thin, const Margins& margins, Polytope& polytope) {
   double reach = config_.local_box_m / map.geometry.resolution_m;
   fewest_.clear();
   Separation result = Separation::roomy;
@@ -122,8 +122,8 @@ void SegmentPolytope::grow(const Ellipsoid& first, const Vec3& extent, const Seg
 }
 
 void to_map(const std::vector<Plane>& planes, const Vec3& base, const GridGeometry& geometry,
-            Faces& polytope) {
-  polytope.clear();
+            Polytope& polytope) {
+  polytope.half_spaces.clear();
   for (const Plane& plane : planes) {
     polytope.add(plane.normal, geometry.resolution_m * (plane.offset + plane.normal.dot(base)) +
                                    plane.normal.dot(geometry.origin_map));

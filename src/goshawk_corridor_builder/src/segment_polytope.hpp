@@ -3,8 +3,8 @@
 #include <array>
 #include <vector>
 
-#include "faces.hpp"
 #include "goshawk/core/grid_geometry.hpp"
+#include "goshawk/core/polytope.hpp"
 #include "goshawk/corridor_builder/config.hpp"
 #include "obstacle_boxes.hpp"
 #include "polytope_inflation.hpp"
@@ -38,7 +38,7 @@ class SegmentPolytope {
   /// @param stop_when_thin ends without a polytope where the balls around its ends do not fit
   /// @param polytope frame map, overwritten unless blocked, or thin and that was to stop it
   Separation build(const ObstacleLayers& map, const Segment& segment, bool stop_when_thin,
-                   const Margins& margins, Faces& polytope);
+                   const Margins& margins, Polytope& polytope);
 
   /// Of the last build: the obstacles around the segment, and where the segment was thin or
   /// blocked, relative to base() [voxel edges]
@@ -69,6 +69,6 @@ class SegmentPolytope {
 
 /// Planes in voxel edges relative to `base`, as a polytope in frame map.
 void to_map(const std::vector<Plane>& planes, const Vec3& base, const GridGeometry& geometry,
-            Faces& polytope);
+            Polytope& polytope);
 
 }  // namespace goshawk::corridor_builder

@@ -89,7 +89,9 @@ TEST(CorridorBuilder, TheCheckerSeesPlanesThatAreAMicrometreTooFarOut) {
     auto corridor = builder.build(grid, path);
     ASSERT_TRUE(corridor.ok());
     EXPECT_EQ(faults_of(*corridor, grid, path), "");
-    for (Polytope& polytope : corridor->polytopes) polytope.b.array() += 1e-6;
+    for (Polytope& polytope : corridor->polytopes) {
+      for (HalfSpace& face : polytope.half_spaces) face.offset_m += 1e-6;
+    }
     EXPECT_NE(faults_of(*corridor, grid, path), "");
   }
 }
@@ -322,7 +324,7 @@ bool same_bits(const Corridor& a, const Corridor& b) {
   for (std::size_t k = 0; k < a.polytopes.size(); ++k) {
     const Polytope& p = a.polytopes[k];
     const Polytope& q = b.polytopes[k];
-    if (p.faces() != q.faces() || p.A != q.A || p.b != q.b) return false;
+    if (p != q) return false;
   }
   for (std::size_t k = 0; k < a.overlaps.size(); ++k) {
     if (a.overlaps[k].center_map != b.overlaps[k].center_map) return false;
@@ -368,8 +370,8 @@ TEST_P(BothGenerators, MovesWithTheWorldByWholeVoxels) {
       const Polytope& p = a->polytopes[i];
       const Polytope& q = b->polytopes[i];
       ASSERT_EQ(p.faces(), q.faces());
-      EXPECT_LT((p.A - q.A).cwiseAbs().maxCoeff(), 1e-12);
-      EXPECT_LT((p.b + p.A * shift - q.b).cwiseAbs().maxCoeff(), 1e-11);
+      EXPECT_LT((p.A() - q.A()).cwiseAbs().maxCoeff(), 1e-12);
+      EXPECT_LT((p.b() + p.A() * shift - q.b()).cwiseAbs().maxCoeff(), 1e-11);
     }
   }
 }
@@ -397,8 +399,7 @@ TEST(CorridorBuilder, ANewConfigBuildsAsOneThatBeganWithIt) {
   ASSERT_TRUE(wanted && got);
   ASSERT_EQ(got->polytopes.size(), wanted->polytopes.size());
   for (std::size_t k = 0; k < got->polytopes.size(); ++k) {
-    EXPECT_EQ(got->polytopes[k].A, wanted->polytopes[k].A);
-    EXPECT_EQ(got->polytopes[k].b, wanted->polytopes[k].b);
+    EXPECT_EQ(got->polytopes[k], wanted->polytopes[k]);
   }
   Config bad;
   bad.max_faces = 3;

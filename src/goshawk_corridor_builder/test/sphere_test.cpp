@@ -107,7 +107,7 @@ TEST(SphereMargin, TheCheckerSeesPlanesThatAreAMicrometreTooFarOut) {
     auto corridor = builder.build(scene.grown, path, &raw);
     ASSERT_TRUE(corridor.ok());
     Polytope& polytope = corridor->polytopes[0];
-    polytope.b.array() += 1e-6;
+    for (HalfSpace& face : polytope.half_spaces) face.offset_m += 1e-6;
     seen += !test_support::sphere_faults(polytope, scene.raw, scene.grown.geometry, scene.radius_m)
                  .empty();
   }

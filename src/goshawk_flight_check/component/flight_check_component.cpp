@@ -7,13 +7,14 @@
 #include "goshawk/flight_check/config.hpp"
 #include "goshawk/flight_check/planned_track.hpp"
 #include "goshawk/runtime/component.hpp"
-#include "goshawk/runtime/stage.hpp"
+#include "goshawk/stage/intake.hpp"
 #include "octomap_msgs.h"
 
 namespace goshawk::flight_check {
 namespace {
 
 using namespace goshawk::runtime;
+using namespace goshawk::stage;
 namespace msg = goshawk_msgs::msg;
 
 constexpr double kAfterLanding_s = 1.0;  // how long after its end a leg still counts as flown

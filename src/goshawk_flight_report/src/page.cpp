@@ -127,12 +127,12 @@ void append_polytope(std::string& text, const Polytope& polytope) {
   text += "{\"A\":[";
   for (int i = 0; i < polytope.faces(); ++i) {
     if (i > 0) text += ',';
-    append(text, Vec3(polytope.A.row(i)));
+    append(text, polytope.half_spaces[std::size_t(i)].normal);
   }
   text += "],\"b\":[";
   for (int i = 0; i < polytope.faces(); ++i) {
     if (i > 0) text += ',';
-    append(text, polytope.b[i]);
+    append(text, polytope.half_spaces[std::size_t(i)].offset_m);
   }
   text += "]}";
 }

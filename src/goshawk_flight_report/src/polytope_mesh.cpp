@@ -45,8 +45,8 @@ Polygon without_repeats(const Polygon& polygon) {
 /// Of planes that coincide only the first bounds the polytope.
 bool repeats_earlier(const Polytope& polytope, int face) {
   for (int j = 0; j < face; ++j) {
-    if ((polytope.A.row(j) - polytope.A.row(face)).norm() < 1e-12 &&
-        std::abs(polytope.b[j] - polytope.b[face]) < 1e-12) {
+    if ((polytope.A().row(j) - polytope.A().row(face)).norm() < 1e-12 &&
+        std::abs(polytope.b()[j] - polytope.b()[face]) < 1e-12) {
       return true;
     }
   }
@@ -63,9 +63,9 @@ std::vector<Polygon> face_polygons(const Polytope& polytope, double extent_m) {
   std::vector<Polygon> faces;
   for (int i = 0; i < polytope.faces(); ++i) {
     if (repeats_earlier(polytope, i)) continue;
-    Polygon face = large_square(polytope.A.row(i), polytope.b[i], extent_m);
+    Polygon face = large_square(polytope.A().row(i), polytope.b()[i], extent_m);
     for (int j = 0; j < polytope.faces() && !face.empty(); ++j) {
-      if (j != i) face = clip(face, polytope.A.row(j), polytope.b[j]);
+      if (j != i) face = clip(face, polytope.A().row(j), polytope.b()[j]);
     }
     face = without_repeats(face);
     if (face.size() >= 3) faces.push_back(std::move(face));

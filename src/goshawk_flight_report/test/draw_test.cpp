@@ -170,7 +170,8 @@ TEST_F(Draw, BadFlightsAreRefusedWithTheirFault) {
   EXPECT_THAT(fault([&](Flight& f) { f.legs[1].waypoints_map[0].z() = nan; }), HasSubstr("leg 1"));
   EXPECT_THAT(fault([&](Flight& f) { f.legs[0].raw_path_map[0].z() = 1e8; }), HasSubstr("leg 0"));
   EXPECT_THAT(fault([&](Flight& f) { f.legs[0].start_t_s = nan; }), HasSubstr("start time"));
-  EXPECT_THAT(fault([&](Flight& f) { f.legs[0].corridor[0].b[0] = nan; }), HasSubstr("polytope"));
+  EXPECT_THAT(fault([&](Flight& f) { f.legs[0].corridor[0].half_spaces[0].offset_m = nan; }),
+              HasSubstr("polytope"));
   EXPECT_THAT(fault([&](Flight& f) { f.legs[0].trajectory.pieces[0].duration_s = 0.0; }),
               HasSubstr("trajectory"));
   EXPECT_THAT(fault([&](Flight& f) { f.limits.v_max_m_s = 0.0; }), HasSubstr("cannot be drawn"));

@@ -10,13 +10,14 @@
 #include "goshawk/map_server/config.hpp"
 #include "goshawk/map_server/live_map.hpp"
 #include "goshawk/runtime/component.hpp"
-#include "goshawk/runtime/stage.hpp"
+#include "goshawk/stage/intake.hpp"
 #include "octomap_msgs.h"
 
 namespace goshawk::map_server {
 namespace {
 
 using namespace goshawk::runtime;
+using namespace goshawk::stage;
 namespace msg = goshawk_msgs::msg;
 
 // How often, at the most, the whole map is published anew for late joiners while scans come in.
@@ -89,7 +90,7 @@ class MapServerComponent : public Component {
       msg::VoxelGrid m;  // freed at once: the writer keeps the bytes for late joiners
       m.header(conversions::make_header(node_.now_ns()));
       conversions::fill_msg(map_.grid(), m);
-      send(voxels_, m);
+      reporter_.send(voxels_, m);
     }
     if (raw_voxels_) publish_raw();
     const std::string bytes = binary_payload(map_.tree());
@@ -99,7 +100,7 @@ class MapServerComponent : public Component {
     m.id("OcTree");
     m.resolution(map_.tree().getResolution());
     m.data().assign(bytes.begin(), bytes.end());
-    send(octomap_, m);
+    reporter_.send(octomap_, m);
   }
 
   void publish_raw() {
@@ -109,7 +110,7 @@ class MapServerComponent : public Component {
     conversions::fill_msg(growing_voxels(grid.geometry, map_.raw_occupied(), grid.known,
                                          map_.growth().unknown, grid.version),
                           m);
-    send(*raw_voxels_, m);
+    reporter_.send(*raw_voxels_, m);
   }
 
   void on_cloud(const sensor_msgs::msg::PointCloud2& m) {
@@ -141,12 +142,7 @@ class MapServerComponent : public Component {
     msg::VoxelGridUpdate m;
     m.header(conversions::make_header(node_.now_ns()));
     conversions::fill_msg(update, m);
-    send(updates_, m);
-  }
-
-  template <typename Message>
-  void send(const Publisher<Message>& publisher, const Message& message) {
-    if (auto status = publisher.publish(message); !status) reporter_.fault(status.error());
+    reporter_.send(updates_, m);
   }
 
   Node& node_;

@@ -1,10 +1,12 @@
 #include "goshawk/mujoco/mujoco_plant.hpp"
-#include "goshawk/simulator/plant_component.hpp"
+#include "goshawk/simulator/quadrotor.hpp"
+#include "goshawk/stage/plant_component.hpp"
 
 namespace goshawk::mujoco {
 namespace {
 
-class MujocoComponent : public simulator::PlantComponent {
+/// The simulator's autopilot, wind and sensors around MuJoCo's plant.
+class MujocoComponent : public stage::PlantComponent<simulator::Quadrotor> {
  public:
   explicit MujocoComponent(runtime::Node& node) : PlantComponent(node, make_mujoco_plant) {}
 };
@@ -12,4 +14,5 @@ class MujocoComponent : public simulator::PlantComponent {
 }  // namespace
 }  // namespace goshawk::mujoco
 
-GOSHAWK_REGISTER_COMPONENT(goshawk::mujoco::MujocoComponent, goshawk::simulator::ComponentConfig)
+GOSHAWK_REGISTER_COMPONENT(goshawk::mujoco::MujocoComponent,
+                           goshawk::mujoco::MujocoComponent::Config)

@@ -11,8 +11,8 @@
 namespace goshawk::mujoco {
 namespace {
 
-using simulator::PlantState;
-using simulator::VehicleParameters;
+using plant::PlantState;
+using plant::VehicleParameters;
 using Vec4 = Eigen::Vector4d;
 
 constexpr int kSubsteps = 2;
@@ -70,7 +70,7 @@ mjModel* load(const std::string& text) {
   return model;
 }
 
-class MujocoPlant : public simulator::PlantModel {
+class MujocoPlant : public plant::PlantModel {
  public:
   explicit MujocoPlant(const VehicleParameters& parameters)
       : p_(parameters), model_(load(model_text(parameters))), data_(mj_makeData(model_.get())) {
@@ -142,7 +142,7 @@ class MujocoPlant : public simulator::PlantModel {
 
 }  // namespace
 
-std::unique_ptr<simulator::PlantModel> make_mujoco_plant(const VehicleParameters& parameters) {
+std::unique_ptr<plant::PlantModel> make_mujoco_plant(const VehicleParameters& parameters) {
   return std::make_unique<MujocoPlant>(parameters);
 }
 

@@ -42,7 +42,7 @@ struct Flown {
   double max_error_m = 0.0;
 };
 
-Flown fly(const simulator::Config& config, const simulator::PlantFactory& plant,
+Flown fly(const simulator::Config& config, const plant::PlantFactory& plant,
           const tracker::CommittedTrajectory& committed) {
   auto vehicle = Quadrotor::create(config, plant).value();
   tracker::Config tracking;
@@ -125,8 +125,8 @@ TEST(BothPlants, SoItDoesInWindAndGusts) {
 }
 
 TEST(BothPlants, EachRepeatsBitForBit) {
-  for (const auto& plant : {simulator::PlantFactory(simulator::make_rigid_body),
-                            simulator::PlantFactory(make_mujoco_plant)}) {
+  for (const auto& plant :
+       {plant::PlantFactory(simulator::make_rigid_body), plant::PlantFactory(make_mujoco_plant)}) {
     simulator::Config config;
     config.gust_deviation_m_s = 0.7;
     config.sensor.position_noise_m = 0.002;

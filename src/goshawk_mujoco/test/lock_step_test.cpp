@@ -78,7 +78,7 @@ class Pilot {
     answer.pieces(conversions::to_msg(line));
     answer.polytopes(conversions::to_msg(box));
     answer.certificate(
-        conversions::to_msg(certify(line, box, request->limits, request->start, request->goal)));
+        conversions::to_msg(measure(line, box, request->limits, request->start, request->goal)));
     EXPECT_TRUE(plans_.publish(answer));
   }
 

@@ -9,8 +9,8 @@
 namespace goshawk::mujoco {
 namespace {
 
-using simulator::PlantState;
-using simulator::VehicleParameters;
+using plant::PlantState;
+using plant::VehicleParameters;
 using Vec4 = Eigen::Vector4d;
 
 PlantState hovering(const VehicleParameters& p) {

@@ -1,13 +1,14 @@
 #include "goshawk/conversions/vehicle.hpp"
 #include "goshawk/navigator/navigator.hpp"
 #include "goshawk/runtime/component.hpp"
-#include "goshawk/runtime/stage.hpp"
+#include "goshawk/stage/intake.hpp"
 #include "pictures.hpp"
 
 namespace goshawk::navigator {
 namespace {
 
 using namespace goshawk::runtime;
+using namespace goshawk::stage;
 namespace msg = goshawk_msgs::msg;
 
 // Milliseconds since 1970: requests of a restarted navigator never repeat an id. In simulated time
@@ -41,7 +42,7 @@ class NavigatorComponent : public Component {
       carry_out();
     });
     publish(StateOrder{});
-    node.every(kAlive_s, [this] { send(alive_, state_message_); });
+    node.every(kAlive_s, [this] { reporter_.send(alive_, state_message_); });
     reporter_.ready("waits for a goal on goal_pose");
   }
 
@@ -131,7 +132,7 @@ class NavigatorComponent : public Component {
                                            .deadline_s = order.deadline_s};
     auto m = conversions::to_msg(request);
     m.header().stamp(conversions::to_stamp(node_.now_ns()));
-    send(requests_, m);
+    reporter_.send(requests_, m);
   }
 
   std::int64_t to_wall_ns(std::int64_t monotonic_ns) const {
@@ -145,10 +146,10 @@ class NavigatorComponent : public Component {
     m.start_time(conversions::to_stamp(start_ns));
     m.yaw(order.yaw_rad);
     m.trajectory(candidate_);
-    send(commits_, m);
+    reporter_.send(commits_, m);
     reporter_.answered(order.id, {.wire_ns = wire_ns_, .compute_ns = 0});
-    send(path_lines_, path_line(candidate_received_.trajectory, start_ns, 0.05));
-    send(markers_, corridor_markers(candidate_received_, start_ns));
+    reporter_.send(path_lines_, path_line(candidate_received_.trajectory, start_ns, 0.05));
+    reporter_.send(markers_, corridor_markers(candidate_received_, start_ns));
   }
 
   void publish(const StateOrder& order) {
@@ -159,12 +160,7 @@ class NavigatorComponent : public Component {
     m.goal(conversions::to_point(order.goal_map));
     m.code(std::string(to_string(order.reason.code)));
     m.message(order.reason.message);
-    send(states_, m);
-  }
-
-  template <typename Message>
-  void send(const Publisher<Message>& publisher, const Message& message) {
-    if (auto status = publisher.publish(message); !status) reporter_.fault(status.error());
+    reporter_.send(states_, m);
   }
 
   Node& node_;

@@ -15,19 +15,19 @@ constexpr std::int32_t kLineList = 5;
 void add_edges(const Polytope& p, std::vector<geometry_msgs::msg::Point>& points) {
   for (int i = 0; i < p.faces(); ++i) {
     for (int j = i + 1; j < p.faces(); ++j) {
-      const Vec3 n = p.A.row(i);
-      const Vec3 m = p.A.row(j);
+      const Vec3 n = p.A().row(i);
+      const Vec3 m = p.A().row(j);
       const Vec3 direction = n.cross(m);
       if (direction.squaredNorm() < 1e-12) continue;
       Eigen::Matrix3d rows;
       rows << n.transpose(), m.transpose(), direction.transpose();
-      const Vec3 origin = rows.inverse() * Vec3(p.b[i], p.b[j], 0.0);
+      const Vec3 origin = rows.inverse() * Vec3(p.b()[i], p.b()[j], 0.0);
       double lo = -1e9;
       double hi = 1e9;
       for (int k = 0; k < p.faces() && lo < hi; ++k) {
         if (k == i || k == j) continue;
-        const double speed = p.A.row(k).dot(direction);
-        const double room = p.b[k] - p.A.row(k).dot(origin);
+        const double speed = p.A().row(k).dot(direction);
+        const double room = p.b()[k] - p.A().row(k).dot(origin);
         if (std::abs(speed) < 1e-12) {
           if (room < -1e-9) hi = lo;
         } else if (speed > 0.0) {

@@ -1,13 +1,14 @@
 #include "goshawk/path_search/config.hpp"
 #include "goshawk/path_search/path_search.hpp"
 #include "goshawk/runtime/component.hpp"
-#include "goshawk/runtime/map_subscription.hpp"
-#include "goshawk/runtime/stage.hpp"
+#include "goshawk/stage/intake.hpp"
+#include "goshawk/stage/map_subscription.hpp"
 
 namespace goshawk::path_search {
 namespace {
 
 using namespace goshawk::runtime;
+using namespace goshawk::stage;
 namespace msg = goshawk_msgs::msg;
 
 PathSearch make_search(const Config& config) {
@@ -97,8 +98,7 @@ class PathSearchComponent : public Component {
     m.expanded(std::uint64_t(path.counters.expanded));
     m.compute_ns(compute_ns);
     m.header(conversions::make_header(node_.now_ns()));
-    if (auto status = publisher_.publish(m); !status)
-      reporter_.failed(request.id(), status.error());
+    reporter_.send(publisher_, m, request.id());
   }
 
   Node& node_;

@@ -1,9 +1,10 @@
-#include "goshawk/simulator/plant_component.hpp"
+#include "goshawk/simulator/quadrotor.hpp"
+#include "goshawk/stage/plant_component.hpp"
 
 namespace goshawk::simulator {
 namespace {
 
-class SimulatorComponent : public PlantComponent {
+class SimulatorComponent : public stage::PlantComponent<Quadrotor> {
  public:
   explicit SimulatorComponent(runtime::Node& node) : PlantComponent(node, make_rigid_body) {}
 };
@@ -12,4 +13,4 @@ class SimulatorComponent : public PlantComponent {
 }  // namespace goshawk::simulator
 
 GOSHAWK_REGISTER_COMPONENT(goshawk::simulator::SimulatorComponent,
-                           goshawk::simulator::ComponentConfig)
+                           goshawk::simulator::SimulatorComponent::Config)

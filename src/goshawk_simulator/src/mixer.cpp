@@ -4,6 +4,9 @@
 #include <cmath>
 
 namespace goshawk::simulator {
+
+using plant::VehicleParameters;
+
 namespace {
 
 using Vec4 = Eigen::Vector4d;

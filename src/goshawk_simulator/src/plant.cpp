@@ -3,6 +3,11 @@
 #include <Eigen/LU>
 
 namespace goshawk::simulator {
+
+using plant::PlantModel;
+using plant::PlantState;
+using plant::VehicleParameters;
+
 namespace {
 
 using Vec4 = Eigen::Vector4d;

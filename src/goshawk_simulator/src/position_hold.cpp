@@ -4,6 +4,9 @@
 #include <cmath>
 
 namespace goshawk::simulator {
+
+using plant::VehicleParameters;
+
 namespace {
 
 constexpr double kVelocityGain_1_s = 5.0;    // braking and damping

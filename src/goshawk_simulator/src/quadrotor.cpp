@@ -3,6 +3,10 @@
 #include <cmath>
 
 namespace goshawk::simulator {
+
+using plant::PlantFactory;
+using plant::PlantState;
+
 namespace {
 
 constexpr double kStep_s = double(Quadrotor::kStep_ns) * 1e-9;

@@ -5,6 +5,9 @@
 #include "goshawk/core/random.hpp"
 
 namespace goshawk::simulator {
+
+using plant::VehicleParameters;
+
 namespace {
 
 using Vec4 = Eigen::Vector4d;

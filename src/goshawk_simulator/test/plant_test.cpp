@@ -5,6 +5,10 @@
 #include <cmath>
 
 namespace goshawk::simulator {
+
+using plant::PlantState;
+using plant::VehicleParameters;
+
 namespace {
 
 using Vec4 = Eigen::Vector4d;

@@ -7,8 +7,8 @@
 #include "goshawk/conversions/plan.hpp"
 #include "goshawk/conversions/vehicle.hpp"
 #include "goshawk/runtime/component.hpp"
-#include "goshawk/runtime/map_subscription.hpp"
-#include "goshawk/runtime/stage.hpp"
+#include "goshawk/stage/intake.hpp"
+#include "goshawk/stage/map_subscription.hpp"
 #include "goshawk/tracker/config.hpp"
 #include "goshawk/tracker/odometry_clock.hpp"
 #include "goshawk/tracker/tracker.hpp"
@@ -17,9 +17,9 @@ namespace goshawk::tracker {
 namespace {
 
 using namespace goshawk::runtime;
+using namespace goshawk::stage;
 namespace msg = goshawk_msgs::msg;
 
-constexpr std::int64_t kComplainEvery_ns = 1'000'000'000;
 constexpr double kClockStep_s = 0.02;  // less is not worth a sentence
 
 Tracker make_tracker(const Config& config) {
@@ -139,7 +139,7 @@ class TrackerComponent : public Component {
 
   void on_odometry(const nav_msgs::msg::Odometry& m) {
     const auto state = conversions::from_msg(m);
-    if (!state) return complain(state.error());
+    if (!state) return reporter_.complain(state.error());
     const std::int64_t sent_stamp_ns = conversions::to_ns(m.header().stamp());
     const std::int64_t now_ns = node_.monotonic_ns();
     const auto made = odometry_clock_.read(sent_stamp_ns, node_.now_ns(), now_ns);
@@ -147,10 +147,10 @@ class TrackerComponent : public Component {
     const auto [command, compute_ns] =
         timed([&] { return tracker_.step(*state, made.time_ns, now_ns); });
     count_step(compute_ns, now_ns);
-    if (!command) return complain(command.error());
+    if (!command) return reporter_.complain(command.error());
     conversions::fill_msg(*command, command_message_);
     command_message_.header(conversions::make_header(node_.now_ns()));
-    if (auto status = commands_.publish(command_message_); !status) complain(status.error());
+    reporter_.send(commands_, command_message_);
     if (waiting_) {
       accept(waiting_->message, waiting_->start_ns, {});
       waiting_.reset();
@@ -201,7 +201,7 @@ class TrackerComponent : public Component {
       if (status.lost_trajectory_id != 0 || status.fault.code != ErrorCode::tracking_lost) {
         reporter_.failed(status.lost_trajectory_id, status.fault);
       } else {
-        complain(status.fault);
+        reporter_.complain(status.fault);
       }
     }
     reported_ = status.fault.message;
@@ -217,15 +217,7 @@ class TrackerComponent : public Component {
     m.time_in_trajectory(status.progress_s);
     m.reference(conversions::to_point(status.reference.position));
     m.position_error(status.error_m);
-    if (auto sent = states_.publish(m); !sent) complain(sent.error());
-  }
-
-  // Bad odometry comes 250 times a second: one sentence a second tells as much.
-  void complain(const Error& error) {
-    const std::int64_t now_ns = node_.monotonic_ns();
-    if (now_ns - complained_ns_ < kComplainEvery_ns) return;
-    complained_ns_ = now_ns;
-    reporter_.fault(error);
+    reporter_.send(states_, m);
   }
 
   Node& node_;
@@ -241,7 +233,6 @@ class TrackerComponent : public Component {
   StepStatistics steps_;
   Timing accepted_;       // of the newest trajectory that was
   std::string reported_;  // the newest fault's sentence
-  std::int64_t complained_ns_ = 0;
 };
 
 }  // namespace

@@ -61,7 +61,7 @@ Status check_corridor(const CommittedTrajectory& c) {
 }
 
 Status check_certificate(const CommittedTrajectory& c) {
-  const auto certificate = certify(c.trajectory, c.polytopes, c.limits, c.start, c.goal);
+  const auto certificate = measure(c.trajectory, c.polytopes, c.limits, c.start, c.goal);
   if (!certificate.holds()) {
     return refuse(c, ErrorCode::not_certified,
                   "its certificate does not hold when recomputed: " + certificate.worst());

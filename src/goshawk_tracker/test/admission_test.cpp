@@ -51,7 +51,7 @@ TEST(Admission, EachWayToBeWrongIsRefusedWithItsCodeAndASentence) {
       {"empty polytope", ErrorCode::invalid_input, "polytope 0",
        [](auto& c) { c.polytopes[0] = Polytope{}; }},
       {"NaN polytope", ErrorCode::invalid_input, "polytope 0",
-       [&](auto& c) { c.polytopes[0].b[0] = nan; }},
+       [&](auto& c) { c.polytopes[0].half_spaces[0].offset_m = nan; }},
       {"outside", ErrorCode::not_certified, "position",
        [](auto& c) {
          c.polytopes[0] = Polytope::box({-9, -9, 0}, {9, 0.5, 9});

@@ -1,5 +1,5 @@
 #include "goshawk/runtime/component.hpp"
-#include "goshawk/runtime/stage.hpp"
+#include "goshawk/stage/intake.hpp"
 #include "goshawk/trajectory_optimizer/config.hpp"
 #include "goshawk/trajectory_optimizer/trajectory_optimizer.hpp"
 #include "goshawk/trajectory_optimizer/yaw.hpp"
@@ -8,6 +8,7 @@ namespace goshawk::trajectory_optimizer {
 namespace {
 
 using namespace goshawk::runtime;
+using namespace goshawk::stage;
 namespace msg = goshawk_msgs::msg;
 
 TrajectoryOptimizer make_optimizer(const Config& config) {
@@ -77,9 +78,7 @@ class TrajectoryOptimizerComponent : public Component {
     }
     m.compute_ns(compute_ns);
     m.header(conversions::make_header(node_.now_ns()));
-    if (auto status = publisher_.publish(m); !status) {
-      reporter_.failed(corridor.request().id(), status.error());
-    }
+    reporter_.send(publisher_, m, request.id);
   }
 
   // A vehicle that flies looks where it was told to; one at rest where its last flight ended. The

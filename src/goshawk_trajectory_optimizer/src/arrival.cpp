@@ -42,7 +42,7 @@ Result<Solution> TrajectoryOptimizer::Method::arrive(const Request& request, dou
   }
   // Slower along the same curve: always possible between rests.
   for (BezierPiece& piece : soonest.trajectory.pieces) piece.duration_s *= factor;
-  soonest.certificate = certify(soonest.trajectory, request.corridor.polytopes, request.limits,
+  soonest.certificate = measure(soonest.trajectory, request.corridor.polytopes, request.limits,
                                 request.start, request.goal);
   if (!soonest.certificate.holds()) {
     return fail(ErrorCode::not_certified, "the slower flight: " + soonest.certificate.worst());
@@ -109,7 +109,7 @@ Result<Solution> TrajectoryOptimizer::Method::within_vehicle(const Request& requ
                                    request.duration_s, request.out_of_time});
     if (careful && respects(flatness_of(careful->trajectory), vehicle) &&
         (!slowed || careful->trajectory.duration_s() < slowed->trajectory.duration_s())) {
-      careful->certificate = certify(careful->trajectory, request.corridor.polytopes,
+      careful->certificate = measure(careful->trajectory, request.corridor.polytopes,
                                      request.limits, request.start, request.goal);
       slowed = *std::move(careful);
     } else {

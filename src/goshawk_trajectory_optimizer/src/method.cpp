@@ -216,7 +216,7 @@ Result<Solution> TrajectoryOptimizer::Method::rival(const Request& request) {
     solves_ = answer->plans;
   }
   const Certificate certificate =
-      certify(trajectory, polytopes, request.limits, request.start, request.goal);
+      measure(trajectory, polytopes, request.limits, request.start, request.goal);
   if (!certificate.holds()) {
     return fail(ErrorCode::not_certified, "the polynomial breaks its promises (" +
                                               certificate.worst() +
@@ -305,7 +305,7 @@ bool TrajectoryOptimizer::Method::consider(const Request& request, const Plan& p
   Trajectory trajectory = make_trajectory(plan);
   if (!trajectory.check()) return false;
   const Certificate certificate =
-      certify(trajectory, request.corridor.polytopes, request.limits, request.start, request.goal);
+      measure(trajectory, request.corridor.polytopes, request.limits, request.start, request.goal);
   outside_ = certificate.position_m > 1e-6;
   if (!certificate.holds()) return false;
   const double jerk_cost = trajectory.jerk_cost();

@@ -116,7 +116,7 @@ class FaceWriter {
     const int begin = int(problem_.faces.size());
     const Vec3 near = problem_.joints[std::size_t(joint)] * coefficients;
     for (int i = 0; i < polytope.faces(); ++i) {
-      const Vec3 normal = polytope.A.row(i).transpose();
+      const Vec3& normal = polytope.half_spaces[std::size_t(i)].normal;
       const double bound = offset(polytope, i);
       if ((bound - normal.dot(near)) * units_.length_m <= reach_m_)
         problem_.faces.push_back({normal, bound});
@@ -127,7 +127,8 @@ class FaceWriter {
 
  private:
   double offset(const Polytope& polytope, int i) const {
-    return (polytope.b[i] - polytope.A.row(i).dot(units_.origin_map)) / units_.length_m;
+    const HalfSpace& face = polytope.half_spaces[std::size_t(i)];
+    return (face.offset_m - face.normal.dot(units_.origin_map)) / units_.length_m;
   }
 
   void finish(int joint, const Vec3& coefficients, int begin) {
@@ -143,7 +144,7 @@ class FaceWriter {
     const bool moves = problem_.scale && !rate.isZero(0.0);
     const int begin = int(problem_.faces.size());
     for (int i = 0; i < polytope.faces(); ++i) {
-      const Vec3 normal = polytope.A.row(i).transpose();
+      const Vec3& normal = polytope.half_spaces[std::size_t(i)].normal;
       const double tolerance = 0.5e-6 / units_.length_m;  // half of the certificate's
       const double bound = std::max(offset(polytope, i), normal.dot(x.col(0))) + tolerance;
       if (!moves && normal.dot(y) > bound) return false;

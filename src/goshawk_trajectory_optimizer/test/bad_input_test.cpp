@@ -69,7 +69,7 @@ TEST(BadInput, FlatAndEmptyPolytopes) {
 TEST(BadInput, NumbersThatAreNotFiniteOrHuge) {
   for (const double bad : {kNaN, kInfinity, -kInfinity}) {
     auto corridor = two_boxes(-0.5);
-    corridor.polytopes[0].b[0] = bad;
+    corridor.polytopes[0].half_spaces[0].offset_m = bad;
     expect_code(optimise(corridor), ErrorCode::invalid_input);
     corridor = two_boxes(-0.5);
     corridor.polytopes[1].A(0, 0) = bad;

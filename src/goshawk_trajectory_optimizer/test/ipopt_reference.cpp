@@ -152,8 +152,8 @@ Dense densify(const SplineProblem& problem, const std::vector<Polytope>& polytop
       if (R.isZero(0.0)) continue;
       for (int f = 0; f < polytopes[i].faces(); ++f) {
         Row row{MatrixXd(0, dense.n), VectorXd(0), VectorXd(0),
-                R.transpose() * polytopes[i].A.row(f).transpose(), 0.0};
-        row.bound = polytopes[i].b[f] - polytopes[i].A.row(f).dot(c);
+                R.transpose() * polytopes[i].A().row(f).transpose(), 0.0};
+        row.bound = polytopes[i].b()[f] - polytopes[i].A().row(f).dot(c);
         dense.rows.push_back(row);
       }
     }

@@ -24,7 +24,9 @@ struct Instance {
     std::vector<Polytope> all;
     for (const int k : plan.polytopes) {
       Polytope p = corridor.polytopes[std::size_t(k)];
-      p.b = (p.b - p.A * units.origin_map) / units.length_m;
+      for (HalfSpace& face : p.half_spaces) {
+        face.offset_m = (face.offset_m - face.normal.dot(units.origin_map)) / units.length_m;
+      }
       all.push_back(p);
     }
     return all;

@@ -51,7 +51,7 @@ void expect_flyable(const Solution& solution, const Corridor& corridor, const Li
         a += dd / (piece.duration_s * piece.duration_s) * c;
       }
       for (int f = 0; f < polytope.faces(); ++f) {
-        ASSERT_LE(polytope.A.row(f).dot(p) - polytope.b[f], 1e-6);
+        ASSERT_LE(polytope.half_spaces[std::size_t(f)].distance_m(p), 1e-6);
       }
       ASSERT_LE(size(v, limits.norm), limits.v_max_m_s + 1e-6);
       ASSERT_LE(size(a, limits.norm), limits.a_max_m_s2 + 1e-6);

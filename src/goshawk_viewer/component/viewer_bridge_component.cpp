@@ -10,7 +10,7 @@
 #include "goshawk/introspection/codec.hpp"
 #include "goshawk/introspection/schema.hpp"
 #include "goshawk/runtime/component.hpp"
-#include "goshawk/runtime/stage_reporter.hpp"
+#include "goshawk/stage/stage_reporter.hpp"
 #include "goshawk/viewer_bridge/server.hpp"
 
 namespace goshawk::viewer_bridge {
@@ -43,6 +43,7 @@ void describe(Self& c, Visitor&& visit) {
 namespace {
 
 using namespace goshawk::runtime;
+using namespace goshawk::stage;
 
 constexpr double kLookAround_s = 0.5;
 constexpr double kServe_s = 0.01;

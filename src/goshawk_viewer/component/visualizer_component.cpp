@@ -1,6 +1,6 @@
 #include "goshawk/conversions/vehicle.hpp"
 #include "goshawk/runtime/component.hpp"
-#include "goshawk/runtime/stage_reporter.hpp"
+#include "goshawk/stage/stage_reporter.hpp"
 #include "goshawk/viewer_bridge/octomap_voxels.hpp"
 #include "markers.hpp"
 #include "octomap_msgs.h"
@@ -24,6 +24,7 @@ void describe(Self& c, Visitor&& visit) {
 namespace {
 
 using namespace goshawk::runtime;
+using namespace goshawk::stage;
 namespace msg = goshawk_msgs::msg;
 using visualization_msgs::msg::MarkerArray;
 
@@ -58,11 +59,6 @@ class VisualizerComponent : public Component {
   }
 
  private:
-  template <typename Message>
-  void send(const Publisher<Message>& publisher, const Message& message) {
-    if (auto status = publisher.publish(message); !status) reporter_.fault(status.error());
-  }
-
   void on_map(const octomap_msgs::msg::Octomap& m) {
     const auto& data = m.data();
     const auto grid = octomap_voxels(
@@ -70,7 +66,7 @@ class VisualizerComponent : public Component {
     if (!grid) return reporter_.fault(grid.error());
     MarkerArray array;
     array.markers().push_back(voxel_marker(*grid, config_.most_cubes, node_.now_ns()));
-    send(obstacles_, array);
+    reporter_.send(obstacles_, array);
   }
 
   void on_trajectory(const msg::CommittedTrajectory& m) {
@@ -89,7 +85,7 @@ class VisualizerComponent : public Component {
     }
     array.markers().push_back(
         trajectory_marker(received->trajectory, received->request.limits.v_max_m_s, now_ns));
-    send(plan_, array);
+    reporter_.send(plan_, array);
   }
 
   void on_odometry(const nav_msgs::msg::Odometry& m) {
@@ -109,7 +105,7 @@ class VisualizerComponent : public Component {
     MarkerArray array;
     array.markers().push_back(
         line_marker("flown track", track_, 0.025, {1.0, 1.0, 1.0}, node_.now_ns()));
-    send(flown_, array);
+    reporter_.send(flown_, array);
   }
 
   Node& node_;

@@ -12,7 +12,7 @@ constexpr double kRounding_m = 1e-9;
 
 bool inside(const Polytope& polytope, const Vec3& p, double tolerance) {
   for (int i = 0; i < polytope.faces(); ++i) {
-    if (polytope.A.row(i).dot(p) > polytope.b[i] + tolerance) return false;
+    if (polytope.A().row(i).dot(p) > polytope.b()[i] + tolerance) return false;
   }
   return true;
 }
@@ -80,16 +80,16 @@ std::vector<Vec3> vertices_of(const Polytope& polytope) {
   const int m = polytope.faces();
   for (int i = 0; i < m; ++i) {
     for (int j = i + 1; j < m; ++j) {
-      const Vec3 ni = polytope.A.row(i), nj = polytope.A.row(j);
+      const Vec3 ni = polytope.A().row(i), nj = polytope.A().row(j);
       const Vec3 line = ni.cross(nj);
       if (line.norm() < 1e-9) continue;
       for (int k = j + 1; k < m; ++k) {
-        const Vec3 nk = polytope.A.row(k);
+        const Vec3 nk = polytope.A().row(k);
         const double det = line.dot(nk);
         if (std::abs(det) < 1e-9) continue;
-        const Vec3 p =
-            (polytope.b[i] * nj.cross(nk) + polytope.b[j] * nk.cross(ni) + polytope.b[k] * line) /
-            det;
+        const Vec3 p = (polytope.b()[i] * nj.cross(nk) + polytope.b()[j] * nk.cross(ni) +
+                        polytope.b()[k] * line) /
+                       det;
         if (inside(polytope, p, kRounding_m)) vertices.push_back(p);
       }
     }
@@ -99,7 +99,7 @@ std::vector<Vec3> vertices_of(const Polytope& polytope) {
 
 bool interiors_meet(const Polytope& polytope, const Vec3& lower, const Vec3& upper) {
   for (int i = 0; i < polytope.faces(); ++i) {
-    if (separates(polytope.A.row(i), polytope.b[i], lower, upper)) return false;
+    if (separates(polytope.A().row(i), polytope.b()[i], lower, upper)) return false;
   }
   const Polytope both = with_box(polytope, lower, upper);
   const std::vector<Vec3> vertices = vertices_of(both);
@@ -126,7 +126,7 @@ double volume_of(const Polytope& polytope) {
       double from = lower.x(), to = upper.x();
       for (int i = 0; i < polytope.faces(); ++i) {
         const double n = polytope.A(i, 0);
-        const double rest = polytope.b[i] - polytope.A.row(i).dot(p);
+        const double rest = polytope.b()[i] - polytope.A().row(i).dot(p);
         if (n > 1e-12) to = std::min(to, rest / n);
         if (n < -1e-12) from = std::max(from, rest / n);
         if (std::abs(n) <= 1e-12 && rest < 0.0) to = from;

@@ -26,9 +26,9 @@ std::vector<Edge> edges_of(const Polytope& polytope, const std::vector<Vec3>& ve
     for (std::size_t j = i + 1; j < vertices.size(); ++j) {
       int common = 0;
       for (int k = 0; k < polytope.faces(); ++k) {
-        const Vec3 n = polytope.A.row(k);
-        common += std::abs(n.dot(vertices[i]) - polytope.b[k]) < 1e-8 &&
-                  std::abs(n.dot(vertices[j]) - polytope.b[k]) < 1e-8;
+        const Vec3 n = polytope.A().row(k);
+        common += std::abs(n.dot(vertices[i]) - polytope.b()[k]) < 1e-8 &&
+                  std::abs(n.dot(vertices[j]) - polytope.b()[k]) < 1e-8;
       }
       if (common >= 2) edges.push_back({vertices[i], vertices[j]});
     }
@@ -68,8 +68,8 @@ double point_to_polytope(const Vec3& p, const Polytope& polytope, const std::vec
   if (polytope.violation(p) <= 0.0) return 0.0;
   double least = std::numeric_limits<double>::infinity();
   for (int k = 0; k < polytope.faces(); ++k) {
-    const Vec3 n = polytope.A.row(k);
-    const double height = n.dot(p) - polytope.b[k];
+    const Vec3 n = polytope.A().row(k);
+    const double height = n.dot(p) - polytope.b()[k];
     if (height > 0.0 && polytope.violation(p - height * n) < 1e-9) least = std::min(least, height);
   }
   for (const Edge& e : edges) least = std::min(least, point_to_edge(p, e));
@@ -116,9 +116,9 @@ std::string sphere_faults(const Polytope& polytope, const BitGrid& raw,
         for (int k = 0; k < polytope.faces() && !far; ++k) {
           double nearest = std::numeric_limits<double>::infinity();
           for (unsigned i = 0; i < 8; ++i) {
-            nearest = std::min(nearest, polytope.A.row(k).dot(corner(i, lo, hi)));
+            nearest = std::min(nearest, polytope.A().row(k).dot(corner(i, lo, hi)));
           }
-          far = nearest - polytope.b[k] >= radius_m;
+          far = nearest - polytope.b()[k] >= radius_m;
         }
         if (far || distance_to_box(polytope, lo, hi) > radius_m - 1e-9) continue;
         return "voxel " + to_text(Index3{x, y, z}) + " is nearer than the radius; ";

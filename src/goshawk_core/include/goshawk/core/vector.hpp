@@ -7,6 +7,12 @@ namespace goshawk {
 
 using Vec3 = Eigen::Vector3d;
 
+// How Eigen aligns a fixed-size type, and how it allocates a dynamic one, depends on what the
+// compiler was told of the processor (-mavx2, -march=native). Public types hold what does not.
+template <int Columns>
+using Points3 = Eigen::Matrix<double, 3, Columns, Eigen::DontAlign>;  // one point a column
+using Vec4 = Eigen::Matrix<double, 4, 1, Eigen::DontAlign>;
+
 /// A voxel's index in a grid.
 struct Index3 {
   int x = 0;

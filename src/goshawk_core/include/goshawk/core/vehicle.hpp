@@ -6,13 +6,15 @@
 
 namespace goshawk {
 
+using Quaternion = Eigen::Quaternion<double, Eigen::DontAlign>;  // see vector.hpp
+
 inline constexpr double kGravity_m_s2 = 9.80665;  // standard gravity
 
 /// The 12 states of the vehicle. Frames: `map` (ENU), `base_link` (FLU).
 struct RigidBodyState {
   Vec3 position_map = Vec3::Zero();                                // [m]
   Vec3 velocity_map = Vec3::Zero();                                // [m/s]
-  Eigen::Quaterniond q_map_base = Eigen::Quaterniond::Identity();  // base_link to map
+  Quaternion q_map_base = Quaternion::Identity();  // base_link to map
   Vec3 angular_velocity_base = Vec3::Zero();                       // [rad/s]
 
   bool is_finite() const {
@@ -25,7 +27,7 @@ struct RigidBodyState {
 /// take, and the body rates that go with it (feedforward).
 struct ThrustAttitude {
   double thrust_n = 0.0;                                           // [N] >= 0
-  Eigen::Quaterniond q_map_base = Eigen::Quaterniond::Identity();  // wanted attitude
+  Quaternion q_map_base = Quaternion::Identity();  // wanted attitude
   Vec3 angular_velocity_base = Vec3::Zero();                       // [rad/s] feedforward
 };
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "goshawk/simulator/plant_model.hpp"
+#include "goshawk/plant/plant_model.hpp"
 
 namespace goshawk::mujoco {
 
@@ -11,7 +11,6 @@ namespace goshawk::mujoco {
 /// parameters with simulator::Plant, and no equation of motion.
 /// @throws std::runtime_error where MuJoCo refuses the model: a bug, as parameters are checked
 /// @pre parameters.check() ok
-std::unique_ptr<simulator::PlantModel> make_mujoco_plant(
-    const simulator::VehicleParameters& parameters);
+std::unique_ptr<plant::PlantModel> make_mujoco_plant(const plant::VehicleParameters& parameters);
 
 }  // namespace goshawk::mujoco

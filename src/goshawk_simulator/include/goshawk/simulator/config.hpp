@@ -4,14 +4,14 @@
 #include <type_traits>
 
 #include "goshawk/core/parameter.hpp"
+#include "goshawk/plant/vehicle_parameters.hpp"
 #include "goshawk/simulator/attitude_controller.hpp"
 #include "goshawk/simulator/sensor.hpp"
-#include "goshawk/simulator/vehicle_parameters.hpp"
 
 namespace goshawk::simulator {
 
 struct Config {
-  VehicleParameters vehicle;
+  plant::VehicleParameters vehicle;
   AttitudeGains attitude;
   double command_timeout_s = 0.1;
   double failsafe_tilt_rad = 0.87;
@@ -43,33 +43,6 @@ void describe(Self& s, Visitor&& visit) {
   visit("odometry_delay_s", s.delay_s, "s",
         "how old odometry is when it is published; its stamp says so", Range{0.0, 1.0});
   visit("sensor_seed", s.seed, "", "the same seed, the same noise", Range{0.0, 2147483647.0});
-}
-
-template <typename Self, typename Visitor>
-requires std::same_as<std::remove_const_t<Self>, VehicleParameters>
-void describe(Self& v, Visitor&& visit) {
-  const auto positive = Range::positive();
-  const Range any_drag{0.0, 100.0};
-  visit("mass_kg", v.mass_kg, "kg", "mass of the vehicle", positive);
-  visit("inertia_xx_kg_m2", v.inertia_xx_kg_m2, "kg m^2", "moment of inertia about x", positive);
-  visit("inertia_yy_kg_m2", v.inertia_yy_kg_m2, "kg m^2", "moment of inertia about y", positive);
-  visit("inertia_zz_kg_m2", v.inertia_zz_kg_m2, "kg m^2", "moment of inertia about z", positive);
-  visit("inertia_xy_kg_m2", v.inertia_xy_kg_m2, "kg m^2", "entry xy of the inertia", Anything{});
-  visit("inertia_xz_kg_m2", v.inertia_xz_kg_m2, "kg m^2", "entry xz of the inertia", Anything{});
-  visit("inertia_yz_kg_m2", v.inertia_yz_kg_m2, "kg m^2", "entry yz of the inertia", Anything{});
-  visit("arm_length_m", v.arm_length_m, "m", "centre of mass to each rotor's axis", positive);
-  visit("max_motor_thrust_n", v.max_motor_thrust_n, "N", "full thrust of one motor", positive);
-  visit("thrust_coefficient_n_s2", v.thrust_coefficient_n_s2, "N s^2",
-        "thrust of a rotor for its speed in rad/s squared", positive);
-  visit("torque_coefficient_nm_s2", v.torque_coefficient_nm_s2, "N m s^2",
-        "reaction torque of a rotor for its speed in rad/s squared", positive);
-  visit("motor_time_constant_s", v.motor_time_constant_s, "s",
-        "lag of the rotor speed behind its command", Range{0.002, 10.0});
-  visit("linear_drag_xy_kg_s", v.linear_drag_xy_kg_s, "kg/s",
-        "rotor drag along body x and y, for the speed through the air", any_drag);
-  visit("linear_drag_z_kg_s", v.linear_drag_z_kg_s, "kg/s", "rotor drag along body z", any_drag);
-  visit("quadratic_drag_kg_m", v.quadratic_drag_kg_m, "kg/m",
-        "body drag, for the speed through the air squared", any_drag);
 }
 
 template <typename Self, typename Visitor>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "goshawk/simulator/vehicle_parameters.hpp"
+#include "goshawk/plant/vehicle_parameters.hpp"
 
 namespace goshawk::simulator {
 
@@ -15,7 +15,7 @@ struct Wrench {
 class Mixer {
  public:
   /// @pre parameters.check() ok
-  explicit Mixer(const VehicleParameters& parameters);
+  explicit Mixer(const plant::VehicleParameters& parameters);
 
   Wrench wrench(const Eigen::Vector4d& rotor_thrust_n) const;
 

@@ -1,8 +1,8 @@
 #pragma once
 
+#include "goshawk/plant/plant_model.hpp"
+#include "goshawk/plant/vehicle_parameters.hpp"
 #include "goshawk/simulator/mixer.hpp"
-#include "goshawk/simulator/plant_model.hpp"
-#include "goshawk/simulator/vehicle_parameters.hpp"
 
 namespace goshawk::simulator {
 
@@ -12,22 +12,22 @@ namespace goshawk::simulator {
 class Plant {
  public:
   /// @pre parameters.check() ok
-  explicit Plant(const VehicleParameters& parameters);
+  explicit Plant(const plant::VehicleParameters& parameters);
 
   /// One Runge-Kutta step of fourth order; rotor commands and wind are constant in it. The
   /// quaternion comes back normalised.
   /// @param rotor_command_rad_s wanted rotor speeds @param wind_map [m/s] @param dt_s > 0
-  PlantState step(const PlantState& state, const Eigen::Vector4d& rotor_command_rad_s,
-                  const Vec3& wind_map, double dt_s) const;
+  plant::PlantState step(const plant::PlantState& state, const Eigen::Vector4d& rotor_command_rad_s,
+                         const Vec3& wind_map, double dt_s) const;
 
   /// [m/s^2] of the centre of mass, gravity and all forces included (zero at hover)
-  Vec3 acceleration_map(const PlantState& state, const Vec3& wind_map) const;
+  Vec3 acceleration_map(const plant::PlantState& state, const Vec3& wind_map) const;
 
   Eigen::Vector4d rotor_thrust_n(const Eigen::Vector4d& rotor_speed_rad_s) const;
   /// Inverse of the above, for thrusts in [0, max_motor_thrust_n].
   Eigen::Vector4d rotor_speed_rad_s(const Eigen::Vector4d& rotor_thrust_n) const;
 
-  const VehicleParameters& parameters() const { return parameters_; }
+  const plant::VehicleParameters& parameters() const { return parameters_; }
   const Mixer& mixer() const { return mixer_; }
   const Eigen::Matrix3d& inertia_kg_m2() const { return inertia_kg_m2_; }
 
@@ -36,10 +36,14 @@ class Plant {
   Packed derivative(const Packed& x, const Eigen::Vector4d& rotor_command_rad_s,
                     const Vec3& wind_map) const;
 
-  VehicleParameters parameters_;
+  plant::VehicleParameters parameters_;
   Mixer mixer_;
   Eigen::Matrix3d inertia_kg_m2_;
   Eigen::Matrix3d inverse_inertia_;
 };
+
+/// Plant behind the interface that the autopilot knows.
+/// @pre parameters.check() ok
+std::unique_ptr<plant::PlantModel> make_rigid_body(const plant::VehicleParameters& parameters);
 
 }  // namespace goshawk::simulator

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "goshawk/core/vehicle.hpp"
-#include "goshawk/simulator/vehicle_parameters.hpp"
+#include "goshawk/plant/vehicle_parameters.hpp"
 
 namespace goshawk::simulator {
 
@@ -11,7 +11,7 @@ namespace goshawk::simulator {
 class PositionHold {
  public:
   /// @pre parameters.check() ok; 0 < max_tilt_rad < pi/2
-  PositionHold(const VehicleParameters& parameters, double max_tilt_rad);
+  PositionHold(const plant::VehicleParameters& parameters, double max_tilt_rad);
 
   /// Brake from here on; hover wherever that ends.
   void engage(const RigidBodyState& state);

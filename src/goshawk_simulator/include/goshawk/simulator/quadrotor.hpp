@@ -5,7 +5,7 @@
 #include "goshawk/core/landing.hpp"
 #include "goshawk/simulator/config.hpp"
 #include "goshawk/simulator/mixer.hpp"
-#include "goshawk/simulator/plant_model.hpp"
+#include "goshawk/simulator/plant.hpp"
 #include "goshawk/simulator/position_hold.hpp"
 #include "goshawk/simulator/sensor.hpp"
 #include "goshawk/simulator/wind.hpp"
@@ -28,12 +28,14 @@ enum class Control { commanded, failsafe, landing };
 ///     publish(quadrotor->measure());
 class Quadrotor {
  public:
+  using Config = simulator::Config;
+  using Control = simulator::Control;
   static constexpr std::int64_t kStep_ns = 1'000'000;
 
   /// @param make_plant what is flown: our own rigid body, or another
   /// @return invalid_parameter with every fault of the configuration
   static Result<Quadrotor> create(const Config& config,
-                                  const PlantFactory& make_plant = make_rigid_body);
+                                  const plant::PlantFactory& make_plant = make_rigid_body);
 
   /// The wind may change in flight, nothing else.
   /// @return invalid_parameter: as create(), or for another part of the config; then as before
@@ -78,7 +80,7 @@ class Quadrotor {
   const char* plant_name() const { return plant_->name(); }
 
  private:
-  Quadrotor(const Config& config, const PlantFactory& make_plant);
+  Quadrotor(const Config& config, const plant::PlantFactory& make_plant);
   void step();
   ThrustAttitude onboard_target();
   void learn_disturbance(const Vec3& last_velocity_map);
@@ -86,7 +88,7 @@ class Quadrotor {
   void try_to_land();
 
   Config config_;
-  std::unique_ptr<PlantModel> plant_;
+  std::unique_ptr<plant::PlantModel> plant_;
   Mixer mixer_;
   Eigen::Matrix3d inertia_kg_m2_;
   Wind wind_;

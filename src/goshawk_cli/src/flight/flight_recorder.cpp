@@ -1,0 +1,100 @@
+#include "flight/flight_recorder.hpp"
+
+#include <chrono>
+#include <utility>
+
+#include "goshawk/conversions/vehicle.hpp"
+
+namespace goshawk::cli {
+namespace {
+
+// Samples that may wait to be read: in lock step they come much faster than real time.
+constexpr int kWholeTrack = 10'000;
+
+}  // namespace
+namespace {
+
+using namespace goshawk::runtime;
+namespace msg = goshawk_msgs::msg;
+
+constexpr double kListenStep_s = 0.05;
+
+}  // namespace
+
+FlightRecorder::FlightRecorder(Node& node)
+    : node_(node),
+      goals_(node.advertise<geometry_msgs::msg::PoseStamped>("goal_pose", Qos::reliable_last())) {
+  node.subscribe<msg::StageReport>("stage_report", Qos::latched(100),
+                                   [this](const msg::StageReport& m, const MessageInfo&) {
+                                     if (m.request_id() != 0) {
+                                       requests_[m.request_id()].reports[m.stage()] = m;
+                                     } else if (m.code() == "ok") {
+                                       ready_.insert(m.stage());
+                                     }
+                                   });
+  node.subscribe<msg::NavigatorState>(
+      "navigator_state", Qos::latched(20),
+      [this](const msg::NavigatorState& m, const MessageInfo&) { navigator_ = m; });
+  node.subscribe<msg::Path>(
+      "path", Qos::reliable_last(),
+      [this](const msg::Path& m, const MessageInfo&) { requests_[m.request().id()].path = m; });
+  node.subscribe<msg::Corridor>("corridor", Qos::reliable_last(),
+                                [this](const msg::Corridor& m, const MessageInfo&) {
+                                  requests_[m.request().id()].corridor = m;
+                                });
+  node.subscribe<msg::CommittedTrajectory>(
+      "committed_trajectory", Qos::latched(),
+      [this](const msg::CommittedTrajectory& m, const MessageInfo&) { on_commit(m); });
+  node.subscribe<nav_msgs::msg::Odometry>(
+      "odom", Qos::best_effort(kWholeTrack),
+      [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) {
+        if (!knows_truth_) on_odometry(m);
+      });
+  // A simulator with noisy sensors tells the truth beside them: that is what was flown.
+  node.subscribe<nav_msgs::msg::Odometry>(
+      "odom_true", Qos::best_effort(kWholeTrack),
+      [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) {
+        if (!std::exchange(knows_truth_, true)) flown_.clear();
+        on_odometry(m);
+      });
+  node.subscribe<msg::TrackingState>("tracking_state", Qos::best_effort(100),
+                                     [this](const msg::TrackingState& m, const MessageInfo&) {
+                                       if (m.mode() != "follow") return;
+                                       errors_.push_back({conversions::to_ns(m.header().stamp()),
+                                                          m.request_id(), m.position_error()});
+                                     });
+}
+
+void FlightRecorder::on_odometry(const nav_msgs::msg::Odometry& m) {
+  const auto state = conversions::from_msg(m);
+  if (state) flown_.push_back({conversions::to_ns(m.header().stamp()), *state});
+}
+
+void FlightRecorder::on_commit(const msg::CommittedTrajectory& m) {
+  auto received = conversions::from_msg(m.trajectory());
+  if (!received) return;  // the tracker refuses it as well, and says so
+  committed_.push_back({received->request.id, conversions::to_ns(m.start_time()),
+                        received->request.limits, std::move(received->trajectory),
+                        std::move(received->polytopes)});
+}
+
+void FlightRecorder::send_goal(const Vec3& goal_map) {
+  geometry_msgs::msg::PoseStamped goal;
+  goal.header(conversions::make_header(node_.now_ns()));
+  goal.pose().position(conversions::to_point(goal_map));
+  goal.pose().orientation().w(1.0);
+  // What the navigator said of an earlier goal must not be taken for the answer to this one.
+  navigator_ = {};
+  if (auto status = goals_.publish(goal); !status) throw StartupFault(status.error());
+}
+
+bool FlightRecorder::listen(double timeout_s, const std::function<bool()>& done) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(timeout_s);
+  while (!done()) {
+    if (std::chrono::steady_clock::now() > end) return false;
+    node_.spin_some(kListenStep_s);
+  }
+  return true;
+}
+
+}  // namespace goshawk::cli

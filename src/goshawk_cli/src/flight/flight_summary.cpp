@@ -1,0 +1,191 @@
+#include "flight/flight_summary.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace goshawk::cli {
+namespace {
+
+constexpr const char* kStages[] = {"path_search", "corridor_builder", "trajectory_optimizer",
+                                   "navigator", "tracker"};
+
+Json stages_json(const RequestRecord& record) {
+  Json stages = Json::array();
+  for (const char* name : kStages) {
+    const auto found = record.reports.find(name);
+    if (found == record.reports.end()) continue;
+    const auto& report = found->second;
+    Json counters = Json::object();
+    for (const auto& counter : report.counters())
+      counters[counter.name()] = to_json(counter.value());
+    stages.push_back({{"name", name},
+                      {"implementation", report.implementation()},
+                      {"code", report.code()},
+                      {"compute_us", double(report.compute_ns()) * 1e-3},
+                      {"wire_us", double(report.wire_ns()) * 1e-3},
+                      {"counters", counters}});
+  }
+  return stages;
+}
+
+Json path_json(const RequestRecord& record) {
+  if (record.path.raw().empty()) return nullptr;
+  return {{"raw_length_m", record.path.raw_length()},
+          {"pruned_length_m", record.path.length()},
+          {"waypoints_raw", record.path.raw().size()},
+          {"waypoints", record.path.waypoints().size()},
+          {"expanded", record.path.expanded()},
+          {"points", to_json(conversions::from_msg(record.path.waypoints()))},
+          {"raw_points", to_json(conversions::from_msg(record.path.raw()))}};
+}
+
+Json corridor_json(const RequestRecord& record) {
+  if (record.corridor.polytopes().empty()) return nullptr;
+  return {{"polytopes", record.corridor.polytopes().size()},
+          {"min_overlap_radius_m", to_json(record.corridor.min_overlap_radius())}};
+}
+
+Json trajectory_json(const CommittedRecord* committed) {
+  if (committed == nullptr) return nullptr;
+  const auto& t = committed->trajectory;
+  const auto peaks = t.peaks();
+  return {{"duration_s", t.duration_s()},
+          {"length_m", t.length_m()},
+          {"mean_speed_m_s", t.length_m() / t.duration_s()},
+          {"max_speed_m_s", peaks.speed_m_s},
+          {"max_acceleration_m_s2", peaks.acceleration_m_s2},
+          {"pieces", t.pieces.size()}};
+}
+
+Json tracking_json(const FlightRecorder& record, std::uint64_t request_id) {
+  double squares = 0.0;
+  double largest = 0.0;
+  std::size_t count = 0;
+  for (const auto& e : record.errors()) {
+    if (request_id != 0 && e.request_id != request_id) continue;
+    squares += e.position_error_m * e.position_error_m;
+    largest = std::max(largest, e.position_error_m);
+    ++count;
+  }
+  if (count == 0) return nullptr;
+  return {{"rms_error_m", std::sqrt(squares / double(count))},
+          {"max_error_m", largest},
+          {"samples", count}};
+}
+
+const CommittedRecord* committed_of(const FlightRecorder& record, std::uint64_t id) {
+  const auto found = std::ranges::find(record.committed(), id, &CommittedRecord::request_id);
+  return found == record.committed().end() ? nullptr : &*found;
+}
+
+Json leg_json(const LegOutcome& leg, const FlightRecorder& record) {
+  Json object{{"goal", to_json(leg.goal_map)},
+              {"arrived", leg.arrived},
+              {"code", leg.code},
+              {"message", leg.message},
+              {"flight_time_s", leg.flight_time_s},
+              {"request_id", leg.request_id}};
+  const auto request = record.requests().find(leg.request_id);
+  const RequestRecord none;
+  const RequestRecord& r = request == record.requests().end() ? none : request->second;
+  object["stages"] = stages_json(r);
+  object["path"] = path_json(r);
+  object["corridor"] = corridor_json(r);
+  object["trajectory"] = trajectory_json(committed_of(record, leg.request_id));
+  object["tracking"] = tracking_json(record, leg.request_id);
+  return object;
+}
+
+double number(const Json& object, const char* key) {
+  return object.contains(key) && object[key].is_number() ? object[key].get<double>() : NAN;
+}
+
+void print_leg(const Json& leg, std::size_t index, std::size_t count) {
+  const auto& g = leg["goal"];
+  std::printf(
+      "\nleg %zu of %zu to (%g, %g, %g): %s\n", index, count, g[0].get<double>(),
+      g[1].get<double>(), g[2].get<double>(),
+      leg["arrived"].get<bool>()
+          ? "arrived"
+          : (leg["code"].get<std::string>() + ": " + leg["message"].get<std::string>()).c_str());
+  for (const auto& stage : leg["stages"]) {
+    std::printf("  %-21s %-20s compute %8.1f us   wire %8.1f us\n",
+                stage["name"].get<std::string>().c_str(),
+                stage["implementation"].get<std::string>().c_str(), number(stage, "compute_us"),
+                number(stage, "wire_us"));
+  }
+  if (const auto& p = leg["path"]; !p.is_null()) {
+    std::printf("  path       %.3f m, %lld waypoints; pruned %.3f m, %lld waypoints\n",
+                number(p, "raw_length_m"), p["waypoints_raw"].get<long long>(),
+                number(p, "pruned_length_m"), p["waypoints"].get<long long>());
+  }
+  if (const auto& c = leg["corridor"]; !c.is_null()) {
+    std::printf("  corridor   %lld polytopes\n", c["polytopes"].get<long long>());
+  }
+  if (const auto& t = leg["trajectory"]; !t.is_null()) {
+    std::printf("  trajectory %.3f m in %.3f s, mean %.3f m/s, top %.3f m/s and %.3f m/s^2\n",
+                number(t, "length_m"), number(t, "duration_s"), number(t, "mean_speed_m_s"),
+                number(t, "max_speed_m_s"), number(t, "max_acceleration_m_s2"));
+  }
+  if (const auto& t = leg["tracking"]; !t.is_null()) {
+    std::printf("  tracking   rms %.1f mm, largest %.1f mm\n", 1e3 * number(t, "rms_error_m"),
+                1e3 * number(t, "max_error_m"));
+  }
+}
+
+}  // namespace
+
+bool FlightOutcome::all_arrived() const {
+  return !legs.empty() && std::ranges::all_of(legs, &LegOutcome::arrived);
+}
+
+Json summary_json(const FlightOutcome& outcome, const FlightRecorder& record,
+                  const std::string& folder) {
+  Json legs = Json::array();
+  for (const auto& leg : outcome.legs) legs.push_back(leg_json(leg, record));
+  Json clearance = nullptr;
+  if (outcome.verdict) {
+    const auto& v = *outcome.verdict;
+    clearance = {{"smallest_m", to_json(v.clearance_m)},
+                 {"at_s", to_json(v.clearance_t_s)},
+                 {"place", to_json(v.clearance_place_map)},
+                 {"samples", v.samples},
+                 {"sentence", v.sentence}};
+  }
+  // The first leg that failed speaks for the flight.
+  std::string code = "ok";
+  std::string message;
+  for (const auto& leg : outcome.legs) {
+    if (leg.arrived || code != "ok") continue;
+    code = leg.code;
+    message = leg.message;
+  }
+  if (code == "ok" && !outcome.verdict) {
+    code = to_string(outcome.verdict.code());
+    message = outcome.verdict.error().message;
+  }
+  const char* verdict = outcome.touched() ? "touched" : outcome.all_arrived() ? "safe" : "failed";
+  if (!outcome.verdict) verdict = "not judged";
+  return {{"ok", outcome.ok()},     {"code", code},    {"message", message},
+          {"verdict", verdict},     {"legs", legs},    {"tracking", tracking_json(record, 0)},
+          {"clearance", clearance}, {"folder", folder}};
+}
+
+void print_summary(const Json& summary) {
+  const auto& legs = summary["legs"];
+  for (std::size_t i = 0; i < legs.size(); ++i) print_leg(legs[i], i + 1, legs.size());
+  std::printf("\n");
+  if (const auto& c = summary["clearance"]; !c.is_null()) {
+    std::printf("second opinion: %s\n", c["sentence"].get<std::string>().c_str());
+  }
+  std::printf(
+      "verdict: %s%s%s\n", summary["verdict"].get<std::string>().c_str(),
+      summary["code"] == "ok" ? "" : (", " + summary["code"].get<std::string>()).c_str(),
+      summary["message"] == "" ? "" : (": " + summary["message"].get<std::string>()).c_str());
+  const auto folder = summary["folder"].get<std::string>();
+  std::printf("flight folder: %s\nlook at it:    %s/flight.html (opens by double click)\n",
+              folder.c_str(), folder.c_str());
+}
+
+}  // namespace goshawk::cli

@@ -1,0 +1,32 @@
+#include "flight/recorder_process.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <set>
+
+namespace goshawk::cli {
+
+Result<LaunchProcess> start_recorder(const std::string& folder, int domain) {
+  return LaunchProcess::start_verb(
+      {"record", "--stop-with-parent", "--parent", std::to_string(getpid()), "--overwrite", "-o",
+       folder + "/flight.mcap"},
+      domain, folder + "/logs/record.log");
+}
+
+bool hears_planning(const runtime::Context& context, pid_t recorder) {
+  std::string prefix;
+  for (const auto& participant : context.participants()) {
+    if (participant.name == "goshawk_" + std::to_string(recorder)) prefix = participant.guid_prefix;
+  }
+  std::set<std::string> heard;
+  for (const auto& endpoint : context.endpoints()) {
+    if (!endpoint.writer && endpoint.participant == prefix) heard.insert(endpoint.topic);
+  }
+  static constexpr const char* kTopics[] = {"plan_request", "path", "corridor", "trajectory"};
+  return std::ranges::all_of(kTopics, [&](const std::string& topic) {
+    return std::ranges::any_of(heard, [&](const auto& h) { return h.ends_with("/" + topic); });
+  });
+}
+
+}  // namespace goshawk::cli

@@ -1,0 +1,112 @@
+#include "planning/planning.hpp"
+
+#include "goshawk/map_server/map_file.hpp"
+#include "goshawk/runtime/component.hpp"
+#include "goshawk/stage/intake.hpp"
+
+namespace goshawk::cli {
+namespace {
+
+template <typename Config>
+Status read_into(Config& config, const runtime::RosArgs& args, const char* node) {
+  const auto source = args.parameters_of(node);
+  if (!source) return source.error();
+  auto read = runtime::read_parameters<Config>(*source, node);
+  if (!read) return read.error();
+  config = *std::move(read);
+  return success();
+}
+
+// Runs one stage, notes its time, and hands its answer on.
+template <typename Work>
+auto run_stage(Plan& plan, std::string name, std::string implementation, Work&& work) {
+  auto [result, ns] = stage::timed(std::forward<Work>(work));
+  plan.stages.push_back({std::move(name), std::move(implementation), double(ns) * 1e-3});
+  return std::move(result);
+}
+
+}  // namespace
+
+Result<PlanningConfig> PlanningConfig::read(const runtime::RosArgs& args) {
+  PlanningConfig c;
+  std::string faults;
+  const auto note = [&](const Status& status) {
+    if (!status) faults += (faults.empty() ? "" : "\n") + status.error().message;
+  };
+  for (const auto& file : args.params_files) {
+    note(runtime::check_sections(file, runtime::installed_components()));
+  }
+  if (!faults.empty()) return fail(ErrorCode::invalid_parameter, faults);
+  note(read_into(c.map, args, "map_server"));
+  note(read_into(c.search, args, "path_search"));
+  note(read_into(c.corridor, args, "corridor_builder"));
+  note(read_into(c.trajectory, args, "trajectory_optimizer"));
+  if (!faults.empty()) return fail(ErrorCode::invalid_parameter, faults);
+  return c;
+}
+
+Result<LoadedMap> load_map(const map_server::Config& config) {
+  auto source = map_server::load_map(config.map_file, map_server::load_options(config));
+  if (!source) return source.error();
+  auto raw = map_server::voxelize(*source->tree, map_server::voxelize_options(config));
+  if (!raw) return raw.error();
+  auto grown = map_server::make_voxel_grid(*raw, map_server::growth(config), 1);
+  if (!grown) return grown.error();
+  return LoadedMap{*std::move(raw), std::make_shared<const VoxelGrid>(*std::move(grown)),
+                   source->tree, map_server::growth(config).unknown};
+}
+
+Result<Planner> Planner::create(const PlanningConfig& config) {
+  auto search = path_search::PathSearch::create(config.search);
+  if (!search) return search.error();
+  auto builder = corridor_builder::CorridorBuilder::create(config.corridor);
+  if (!builder) return builder.error();
+  auto optimizer = trajectory_optimizer::TrajectoryOptimizer::create(config.trajectory);
+  if (!optimizer) return optimizer.error();
+  return Planner(*std::move(search), *std::move(builder), *std::move(optimizer));
+}
+
+void Planner::set_map(const LoadedMap& map) {
+  grid_ = map.grown;
+  raw_.emplace(map_server::growing_voxels(map.raw.geometry, map.raw.occupied, map.raw.known,
+                                          map.unknown, map.grown->version));
+  search_.set_map(grid_);
+}
+
+Plan Planner::plan(const FlatState& start, const FlatState& goal, const Limits& limits,
+                   const std::vector<Vec3>& other_goals_map) {
+  Plan plan;
+  plan.start = start;
+  plan.goal = goal;
+  plan.limits = limits;
+  std::vector<Vec3> goals_map = {goal.position};
+  goals_map.insert(goals_map.end(), other_goals_map.begin(), other_goals_map.end());
+  plan.outcome = run(start, goals_map, limits, plan);
+  return plan;
+}
+
+Status Planner::run(const FlatState& start, const std::vector<Vec3>& goals_map,
+                    const Limits& limits, Plan& plan) {
+  if (auto status = limits.check(); !status) return status;
+  auto path = run_stage(plan, "path_search", std::string(search_.planner_name()), [&] {
+    return search_.plan({.start_map = start.position, .goals_map = goals_map});
+  });
+  if (!path) return path.error();
+  plan.path = *std::move(path);
+  // The search may have moved the ends, or chosen another goal.
+  plan.start.position = plan.path->waypoints_map.front();
+  plan.goal.position = plan.path->waypoints_map.back();
+  const auto raw = raw_->obstacles(grid_->inflation_m);
+  auto corridor = run_stage(plan, "corridor_builder", std::string(builder_.implementation()),
+                            [&] { return builder_.build(*grid_, plan.path->waypoints_map, &raw); });
+  if (!corridor) return corridor.error();
+  plan.corridor = *std::move(corridor);
+  auto solution =
+      run_stage(plan, "trajectory_optimizer", std::string(optimizer_.implementation()),
+                [&] { return optimizer_.optimise(*plan.corridor, plan.start, plan.goal, limits); });
+  if (!solution) return solution.error();
+  plan.solution = *std::move(solution);
+  return success();
+}
+
+}  // namespace goshawk::cli

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "goshawk/core/grid_geometry.hpp"
+#include "goshawk/stage/stage_reporter.hpp"
+
+namespace goshawk::stage {
+
+/// Keeps a stage's copy of the map up to date from `map/voxels` and `map/voxels/updates`. A message
+/// that is wrong is reported on stage_report, and the grid before it stays. An update that does
+/// not follow on the version here is dropped: the whole map comes again soon after.
+class MapSubscription {
+ public:
+  using Callback = std::function<void(const std::shared_ptr<const VoxelGrid>&)>;
+
+  /// @param on_map called with every new grid, in the node's thread
+  MapSubscription(runtime::Node& node, StageReporter& reporter, Callback on_map = {});
+
+  /// @return the newest grid, or nullptr before the first
+  const std::shared_ptr<const VoxelGrid>& grid() const { return grid_; }
+
+ private:
+  void on_grid(const goshawk_msgs::msg::VoxelGrid& m);
+  void on_update(const goshawk_msgs::msg::VoxelGridUpdate& m);
+  void take(VoxelGrid grid);
+
+  StageReporter& reporter_;
+  Callback on_map_;
+  std::shared_ptr<const VoxelGrid> grid_;
+};
+
+}  // namespace goshawk::stage
