@@ -4,7 +4,7 @@
     idl_to_schema.py OUTPUT.cpp FILE.idl ...
 
 Understands the subset that idl/ uses: modules, structs, sequence<T>, arrays, strings, primitives,
-@extensibility(FINAL). Anything else stops it with file and line, so that no field is ever missing
+@extensibility(FINAL), constants. Anything else stops it with file and line, so that no field is ever missing
 from what the tools show. The comment behind a field (and the lines that go on below it) is kept.
 """
 
@@ -25,6 +25,7 @@ FIELD = re.compile(
     r"(?:\[\s*(?P<size>\d+)\s*\])?\s*;$")
 STRUCT = re.compile(r"^struct\s+(\w+)\s*\{$")
 MODULE = re.compile(r"^module\s+(\w+)\s*\{$")
+CONSTANT = re.compile(r"^const\s+octet\s+\w+\s*=\s*\d+\s*;$")  # nothing on the wire
 
 
 class IdlError(Exception):
@@ -66,7 +67,7 @@ def parse_line(code, comment, scopes, structs, pending):
         if not scopes:
             raise IdlError("closes what was never opened")
         scopes.pop()
-    elif code == "@extensibility(FINAL)" or code.startswith("#"):
+    elif code == "@extensibility(FINAL)" or code.startswith("#") or CONSTANT.match(code):
         return
     elif scopes and scopes[-1] is None:
         structs[-1].fields.append(parse_field(code, comment))

@@ -45,6 +45,10 @@ def outside(polytope, p):
                for n, b in zip(polytope["A"], polytope["b"], strict=True))
 
 
+def always(polytope):
+    return polytope["from"] == 0 and polytope["until"] == 0
+
+
 def apart(a, b):
     return max(length(minus(x, y)) for x, y in zip(a, b))
 
@@ -67,7 +71,8 @@ def check(plan):
     v_factor, a_factor, until = allowance(plan["start"], limits)
     worst = dict.fromkeys(["position", "velocity", "acceleration"], -math.inf)
     worst["jerk"] = -math.inf if limits["j_max"] > 0 else 0.0
-    worst.update(dict.fromkeys(["joint_position", "joint_velocity", "joint_acceleration"], 0.0))
+    worst["validity"] = 0.0 if all(always(p) for p in plan["polytopes"]) else -math.inf
+    worst.update(dict.fromkeys(["continuity_position", "continuity_velocity", "continuity_acceleration"], 0.0))
 
     def note(family, value):
         worst[family] = math.inf if math.isnan(value) else max(worst[family], value)
@@ -80,8 +85,12 @@ def check(plan):
         velocity = derivative(points, duration)
         acceleration = derivative(velocity, duration)
         early = begin < until
+        home = plan["polytopes"][piece["polytope"]]
         for p in points:
-            note("position", outside(plan["polytopes"][piece["polytope"]], p))
+            note("position", outside(home, p))
+        if not always(home):
+            note("validity", home["from"] - begin)
+            note("validity", begin + duration - home["until"])
         for v in velocity:
             u = use(v, limits["norm"], limits["v_max"], limits["v_max_vertical"])
             note("velocity", limits["v_max"] * (u - (v_factor if early else 1)))
@@ -95,7 +104,7 @@ def check(plan):
         if before is None:
             worst["start"] = apart(first, plan["start"])
         else:
-            for family, x, y in zip(["joint_position", "joint_velocity", "joint_acceleration"], first, before):
+            for family, x, y in zip(["continuity_position", "continuity_velocity", "continuity_acceleration"], first, before):
                 note(family, length(minus(x, y)))
         before = [points[-1], velocity[-1], acceleration[-1]]
         begin += duration
@@ -111,15 +120,17 @@ def state(s):
     return [point(s[k]) for k in ("position", "velocity", "acceleration")]
 
 
+def number(values, name, unit):
+    return float(values.get(name, values.get(f"{name}_{unit}", 0.0)))
+
+
 def polytope(p):
+    interval = {"from": number(p, "valid_from", "s"), "until": number(p, "valid_until", "s")}
     if "A" in p:
-        return {"A": [point(n) for n in p["A"]], "b": [float(b) for b in p["b"]]}
+        return {"A": [point(n) for n in p["A"]], "b": [float(b) for b in p["b"]], **interval}
     n = [float(x) for x in p["normals"]]
-    return {"A": [n[i:i + 3] for i in range(0, len(n), 3)], "b": [float(b) for b in p["offsets"]]}
-
-
-def limit(limits, name, unit):
-    return float(limits.get(name, limits.get(f"{name}_{unit}", 0.0)))
+    return {"A": [n[i:i + 3] for i in range(0, len(n), 3)], "b": [float(b) for b in p["offsets"]],
+            **interval}
 
 
 def read(message):
@@ -137,10 +148,10 @@ def read(message):
     return {
         "start": state(request["start"]),
         "goal": state(request["goal"]),
-        "limits": {"norm": int(limits["norm"]), "v_max": limit(limits, "v_max", "m_s"),
-                   "a_max": limit(limits, "a_max", "m_s2"), "j_max": limit(limits, "j_max", "m_s3"),
-                   "v_max_vertical": limit(limits, "v_max_vertical", "m_s"),
-                   "a_max_vertical": limit(limits, "a_max_vertical", "m_s2")},
+        "limits": {"norm": int(limits["norm"]), "v_max": number(limits, "v_max", "m_s"),
+                   "a_max": number(limits, "a_max", "m_s2"), "j_max": number(limits, "j_max", "m_s3"),
+                   "v_max_vertical": number(limits, "v_max_vertical", "m_s"),
+                   "a_max_vertical": number(limits, "a_max_vertical", "m_s2")},
         "polytopes": [polytope(p) for p in polytopes["polytopes"]],
         "pieces": [{"duration": float(p.get("duration_s", p.get("duration"))),
                     "polytope": int(p["polytope"]),

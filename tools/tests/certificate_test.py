@@ -81,6 +81,9 @@ class CertificateTest(unittest.TestCase):
         self.assertEqual(spoil(lambda p, piece, r: r["limits"].update(norm=2, v_max_vertical_m_s=0.1)), [])
         self.assertEqual(spoil(lambda p, piece, r: r["goal"]["position"].__setitem__(0, 1.1)), ["goal"])
         self.assertEqual(spoil(lambda p, piece, r: piece.update(duration_s=0.0)), ["position"])
+        self.assertEqual(spoil(lambda p, piece, r: p["corridor"]["polytopes"][0].update(valid_until_s=3.5)),
+                         ["validity"])
+        self.assertEqual(spoil(lambda p, piece, r: p["corridor"]["polytopes"][0].update(valid_until_s=4.5)), [])
         self.assertIn("position", spoil(lambda p, piece, r: p["corridor"]["polytopes"][0]["A"][0].__setitem__(0, 2)))
 
     def test_a_jump_between_pieces_is_found(self):
@@ -91,7 +94,7 @@ class CertificateTest(unittest.TestCase):
         p["corridor"]["polytopes"][0] = {**BOX, "b": [9, 1, 1, 1, 1, 1]}
         p["trajectory"]["pieces"].append(second)
         p["request"]["goal"] = rest(2 - 1e-3)
-        self.assertEqual(broken(p), ["joint_position"])
+        self.assertEqual(broken(p), ["continuity_position"])
 
     def test_exit_status_and_sentence(self):
         for text, status, said in [(json.dumps(plan()), 0, "holds"),

@@ -68,8 +68,10 @@ std::vector<Generator> generators() {
   all.push_back({"ellipsoid", builder_of({.max_segment_m = kWhole_m})});
   all.push_back(
       {"ellipsoid, no growth", builder_of({.max_segment_m = kWhole_m, .growth_passes = 0})});
-  all.push_back({"sphere", builder_of({.margin = "sphere", .max_segment_m = kWhole_m}), true});
-  all.push_back({"box", builder_of({.generator = "box"})});
+  all.push_back(
+      {"sphere",
+       builder_of({.margin = corridor_builder::Margin::sphere, .max_segment_m = kWhole_m}), true});
+  all.push_back({"box", builder_of({.generator = corridor_builder::Generator::box})});
   all.push_back({"decomposition", std::nullopt});
   all.push_back({"decomposition, cleared", std::nullopt, false, Planes::before_cubes});
   return all;
@@ -152,10 +154,11 @@ void measure_segments(Report& report, const WorldClass& world, const std::vector
 
 /// Whole paths: joints, bends and dropped polytopes included.
 void measure_paths(Report& report, const WorldClass& world, const std::vector<Scene>& scenes) {
-  const std::pair<std::string, Config> rows[] = {{"ellipsoid", {}},
-                                                 {"ellipsoid, path not bent", {.bend_path = false}},
-                                                 {"sphere", {.margin = "sphere"}},
-                                                 {"box", {.generator = "box"}}};
+  const std::pair<std::string, Config> rows[] = {
+      {"ellipsoid", {}},
+      {"ellipsoid, path not bent", {.bend_path = false}},
+      {"sphere", {.margin = corridor_builder::Margin::sphere}},
+      {"box", {.generator = corridor_builder::Generator::box}}};
   for (const auto& [name, config] : rows) {
     CorridorBuilder builder = builder_of(config);
     Timing whole, shares;

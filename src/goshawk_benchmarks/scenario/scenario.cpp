@@ -1,5 +1,7 @@
 // goshawk bench scenario MAP.3dmap SCEN.3dscen: do our lengths match the published ones, and how
 // long does a problem take?
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cmath>
@@ -32,7 +34,13 @@ bool matches(double length, double published) {
 Result<Json> run_planner(const std::string& name, const BitGrid& map,
                          const std::vector<Problem>& problems) {
   path_search::Config config;
-  config.planner = name;
+  const auto chosen = from_word<path_search::Planner>(name);
+  if (!chosen) {
+    return fail(ErrorCode::invalid_parameter,
+                fmt::format("planner is '{}' and must be one of {}", name,
+                            fmt::join(all_words<path_search::Planner>(), ", ")));
+  }
+  config.planner = *chosen;
   auto planner = path_search::make_planner(config);
   if (!planner) return planner.error();
   (*planner)->set_map(map);

@@ -41,8 +41,8 @@ Json or_null(std::optional<double> value) {
 
 std::unique_ptr<GridPlanner> planner_of(const std::string& name, const std::string& rule) {
   Config config;
-  config.planner = name;
-  config.corner_rule = rule;
+  config.planner = from_word<path_search::Planner>(name).value();
+  config.corner_rule = from_word<path_search::CornerRule>(rule).value();
   return std::move(path_search::make_planner(config)).value();
 }
 
@@ -143,10 +143,10 @@ path_search::PathSearch stage_of(const Case& c, const std::string& planner,
   // "rrt, fcl" is rrt with that validity.
   const std::size_t comma = planner.find(',');
   Config config;
-  config.planner = planner.substr(0, comma);
-  if (comma != std::string::npos) config.validity = planner.substr(comma + 2);
-  config.corner_rule = c.rule;
-  config.pruning = pruning;
+  config.planner = from_word<path_search::Planner>(planner.substr(0, comma)).value();
+  if (comma != std::string::npos) config.validity = path_search::Validity::fcl;
+  config.corner_rule = from_word<path_search::CornerRule>(c.rule).value();
+  config.pruning = from_word<path_search::Pruning>(pruning).value();
   config.max_iterations = 3000;
   return std::move(path_search::PathSearch::create(config)).value();
 }

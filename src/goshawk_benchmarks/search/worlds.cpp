@@ -141,7 +141,7 @@ World octomap(const std::string& name, std::size_t queries) {
   if (!grid) return world;
   world.blocked = grid->occupied;
   const auto planner = goshawk::path_search::make_grid_search(
-      goshawk::path_search::Variant::jastar, goshawk::path_search::CornerRule::no_squeeze);
+      goshawk::path_search::Planner::jastar, goshawk::path_search::CornerRule::no_squeeze);
   planner->set_map(world.blocked);
   Random random(1);
   const Index3 s = world.blocked.size();

@@ -33,7 +33,9 @@ std::optional<Planner> Planner::make(const std::string& name) {
   Planner planner;
   planner.name_ = name;
   path_search::Config search;
-  search.planner = name == "ref40" ? "rrtstar" : name == "ref42" ? "astar" : "jastar";
+  search.planner = name == "ref40"   ? path_search::Planner::rrtstar
+                   : name == "ref42" ? path_search::Planner::astar
+                                     : path_search::Planner::jastar;
   auto made = path_search::PathSearch::create(search);
   if (!made) return std::nullopt;
   planner.search_ = *std::move(made);

@@ -78,6 +78,11 @@ function(goshawk_core_library)
     $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:include>)
   target_link_libraries(${target} PUBLIC ${arg_LINK} PRIVATE ${arg_PRIVATE_LINK})
   _goshawk_warnings(${target})
+  # A consumer may be compiled for another processor: inline functions stay on either side.
+  set(exports ${GOSHAWK_CMAKE_DIR}/core_library.map)
+  target_compile_options(${target} PRIVATE -fvisibility-inlines-hidden)
+  target_link_options(${target} PRIVATE -Wl,--version-script=${exports})
+  set_target_properties(${target} PROPERTIES LINK_DEPENDS ${exports})
   if(BUILD_TESTING)
     list(FILTER arg_SOURCES EXCLUDE REGEX "^[$/]")  # objects made elsewhere, generated files
     set(sources ${arg_SOURCES})

@@ -13,7 +13,7 @@ namespace goshawk::conformance {
 namespace {
 
 msg::PlanRequest request_between(const Vec3& start, const Vec3& goal) {
-  conversions::PlanRequest request;
+  PlanRequest request;
   request.id = 1;
   request.start.position = start;
   request.goal.position = goal;

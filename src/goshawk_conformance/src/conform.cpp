@@ -48,8 +48,8 @@ Result<Report> examine_tracker(runtime::Context& context, const Options& o) {
   if (!flights) return flights.error();
   // One that begins in motion cannot be joined from rest.
   std::erase_if(*flights, [](const msg::CommittedTrajectory& m) {
-    const auto& v = m.trajectory().request().start().velocity();
-    return m.trajectory().pieces().empty() || std::hypot(v.x(), v.y(), v.z()) > 1e-3;
+    const auto& v = m.nominal().request().start().velocity();
+    return m.nominal().pieces().empty() || std::hypot(v.x(), v.y(), v.z()) > 1e-3;
   });
   return TrackerExaminer(context, o).examine(*flights);
 }

@@ -23,7 +23,7 @@ const auto kNever = [] { return false; };
 
 // Where a committed trajectory wants the vehicle, by de Casteljau.
 Vec3 wanted(const msg::CommittedTrajectory& m, double time_s) {
-  const auto& pieces = m.trajectory().pieces();
+  const auto& pieces = m.nominal().pieces();
   std::size_t k = 0;
   time_s = std::max(0.0, time_s);
   while (k + 1 < pieces.size() && time_s > pieces[k].duration()) time_s -= pieces[k++].duration();
@@ -41,7 +41,7 @@ Vec3 wanted(const msg::CommittedTrajectory& m, double time_s) {
 
 double duration_s(const msg::CommittedTrajectory& m) {
   double sum_s = 0.0;
-  for (const auto& piece : m.trajectory().pieces()) sum_s += piece.duration();
+  for (const auto& piece : m.nominal().pieces()) sum_s += piece.duration();
   return sum_s;
 }
 
@@ -94,8 +94,8 @@ Result<Report> TrackerExaminer::examine(const std::vector<Committed>& recorded) 
     examine_flight("flies a trajectory", [&] { return straight(Vec3(0.6, 0.3, 0.2), 3.5); });
     examine_bad();
     for (const auto& m : recorded) {
-      const auto& p = m.trajectory().pieces().front().control_points()[0];
-      examine_flight("flies recorded trajectory " + std::to_string(m.trajectory().request().id()),
+      const auto& p = m.nominal().pieces().front().control_points()[0];
+      examine_flight("flies recorded trajectory " + std::to_string(m.nominal().request().id()),
                      [&] {
                        fly_to(Vec3(p.x(), p.y(), p.z()));
                        return m;
@@ -181,7 +181,7 @@ void TrackerExaminer::weigh() {
 TrackerExaminer::Committed TrackerExaminer::straight(const Vec3& by, double duration_s) {
   const Vec3 from = vehicle_.position_map;
   const Vec3 to = from + by;
-  conversions::PlanRequest request;
+  PlanRequest request;
   request.start.position = from;
   request.goal.position = to;
   request.limits = {.v_max_m_s = 1.5, .a_max_m_s2 = 1.5};
@@ -193,18 +193,18 @@ TrackerExaminer::Committed TrackerExaminer::straight(const Vec3& by, double dura
     piece.control_points()[j] = conversions::to_point(j < 3 ? from : to);  // rest to rest
   }
   Committed m;
-  m.trajectory().request(conversions::to_msg(request));
-  m.trajectory().implementation("goshawk_conform");
-  m.trajectory().pieces({piece});
-  m.trajectory().polytopes({box_around(from, to, 0.5)});
+  m.nominal().request(conversions::to_msg(request));
+  m.nominal().implementation("goshawk_conform");
+  m.nominal().pieces({piece});
+  m.nominal().polytopes({box_around(from, to, 0.5)});
   m.header(conversions::make_header(node_.now_ns()));
-  m.trajectory().header(m.header());
+  m.nominal().header(m.header());
   return m;
 }
 
 std::int64_t TrackerExaminer::commit(Committed committed, double begins_in_s) {
   listener_.listen(++id_);
-  committed.trajectory().request().id(id_);
+  committed.nominal().request().id(id_);
   const std::int64_t now_ns = node_.now_ns();
   const std::int64_t begin_ns = now_ns + std::int64_t(begins_in_s * 1e9);
   committed.header().stamp(conversions::to_stamp(now_ns));
@@ -284,22 +284,22 @@ void TrackerExaminer::examine_bad() {
   const Vec3 before = vehicle_.position_map;
   refuse("a trajectory in another frame", {"wrong_frame"}, [](Committed& m) {
     m.header().frame_id("base_link");
-    m.trajectory().header().frame_id("base_link");
+    m.nominal().header().frame_id("base_link");
   });
-  refuse("one without pieces", {"invalid_input"}, [](Committed& m) { m.trajectory().pieces({}); });
+  refuse("one without pieces", {"invalid_input"}, [](Committed& m) { m.nominal().pieces({}); });
   refuse("a control point that is not a number", {"invalid_input"},
-         [](Committed& m) { m.trajectory().pieces()[0].control_points()[3].y(kNan); });
+         [](Committed& m) { m.nominal().pieces()[0].control_points()[3].y(kNan); });
   refuse("a piece of no time", {"invalid_input"},
-         [](Committed& m) { m.trajectory().pieces()[0].duration(0.0); });
+         [](Committed& m) { m.nominal().pieces()[0].duration(0.0); });
   refuse("a piece without its polytope", {"invalid_input"},
-         [](Committed& m) { m.trajectory().pieces()[0].polytope(7); });
+         [](Committed& m) { m.nominal().pieces()[0].polytope(7); });
   refuse("a curve that leaves its polytope", {"not_certified"},
-         [](Committed& m) { m.trajectory().polytopes()[0].offsets()[0] -= 0.8; });
+         [](Committed& m) { m.nominal().polytopes()[0].offsets()[0] -= 0.8; });
   refuse("one faster than its limits", {"not_certified"},
-         [](Committed& m) { m.trajectory().request().limits().v_max(0.5); });
+         [](Committed& m) { m.nominal().request().limits().v_max(0.5); });
   refuse("one that ends in motion", {"not_certified"}, [](Committed& m) {
     for (std::size_t j = 2; j < 6; ++j) {
-      auto& p = m.trajectory().pieces()[0].control_points()[j];
+      auto& p = m.nominal().pieces()[0].control_points()[j];
       p.x(p.x() - 0.1 * double(5 - j));
     }
   });
@@ -313,8 +313,8 @@ void TrackerExaminer::examine_bad() {
       "one that ended long ago", {"deadline_exceeded"}, [](Committed&) {}, -60.0);
   refuse("one that no vehicle can fly", {"trajectory_infeasible"}, [&](Committed& m) {
     m = straight(Vec3(0.6, 0.0, 0.0), 0.1);
-    m.trajectory().request().limits().v_max(1e4);
-    m.trajectory().request().limits().a_max(1e4);
+    m.nominal().request().limits().v_max(1e4);
+    m.nominal().request().limits().a_max(1e4);
   });
   live(0.5, kNever);
   const double moved_m = (vehicle_.position_map - before).norm();

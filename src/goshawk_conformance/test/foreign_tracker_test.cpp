@@ -44,18 +44,18 @@ class ForeignTracker {
 
  private:
   void on_commit(const msg::CommittedTrajectory& m) {
-    const std::uint64_t id = m.trajectory().request().id();
-    auto received = conversions::from_msg(m.trajectory());
+    const std::uint64_t id = m.nominal().request().id();
+    const auto received = conversions::from_msg(m);
     Status status = received ? success() : received.error();
     if (received) {
       status = tracker_.accept({.id = id,
-                                .trajectory = std::move(received->trajectory),
-                                .polytopes = std::move(received->polytopes),
-                                .limits = received->request.limits,
-                                .start = received->request.start,
-                                .goal = received->request.goal,
-                                .start_time_ns = conversions::to_ns(m.start_time()),
-                                .yaw_rad = m.yaw()},
+                                .trajectory = received->flown(),
+                                .polytopes = received->flown_polytopes(),
+                                .limits = received->nominal().limits(),
+                                .start = received->nominal().start(),
+                                .goal = received->nominal().goal(),
+                                .start_time_ns = received->start_time_ns(),
+                                .yaw_rad = received->yaw_rad()},
                                node_.now_ns());
     }
     if (status || fault_ == TrackerFault::believes_all) return reporter_.answered(id, {});

@@ -1,5 +1,10 @@
 #include "goshawk/conversions/geometry.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+
 namespace goshawk::conversions {
 
 builtin_interfaces::msg::Time to_stamp(std::int64_t time_ns) {
@@ -25,9 +30,10 @@ std_msgs::msg::Header make_header(std::int64_t stamp_ns, std::string_view frame)
 Status check_frame(const std_msgs::msg::Header& header, std::string_view frame,
                    std::string_view what) {
   if (header.frame_id() == frame) return success();
-  return fail(ErrorCode::wrong_frame, std::string(what) + " is in frame '" + header.frame_id() +
-                                          "', but must be in '" + std::string(frame) +
-                                          "': transform it before it is sent");
+  return fail(
+      ErrorCode::wrong_frame,
+      fmt::format("{} is in frame '{}', but must be in '{}': transform it before sending it", what,
+                  header.frame_id(), frame));
 }
 
 Vec3 from_msg(const geometry_msgs::msg::Point& m) {
@@ -82,9 +88,11 @@ goshawk_msgs::msg::FlatState to_msg(const FlatState& s) {
 Result<Polytope> from_msg(const goshawk_msgs::msg::Polytope& m) {
   const std::size_t faces = m.offsets().size();
   if (m.normals().size() != 3 * faces) {
-    return fail(ErrorCode::invalid_input, "a polytope has " + std::to_string(m.normals().size()) +
-                                              " normal components and " + std::to_string(faces) +
-                                              " offsets: three components an offset are needed");
+    return fail(
+        ErrorCode::invalid_input,
+        fmt::format("a polytope has {} components of normals and {} offsets: it needs three "
+                    "components for each offset",
+                    m.normals().size(), faces));
   }
   Polytope p;
   p.half_spaces.reserve(faces);
@@ -92,7 +100,8 @@ Result<Polytope> from_msg(const goshawk_msgs::msg::Polytope& m) {
     const double* n = m.normals().data() + 3 * i;
     p.add({n[0], n[1], n[2]}, m.offsets()[i]);
   }
-  if (auto status = p.check(); !status) return status.error();
+  p.valid_from_s = m.valid_from();
+  p.valid_until_s = m.valid_until();
   return p;
 }
 
@@ -104,6 +113,8 @@ goshawk_msgs::msg::Polytope to_msg(const Polytope& p) {
     m.normals().insert(m.normals().end(), face.normal.begin(), face.normal.end());
     m.offsets().push_back(face.offset_m);
   }
+  m.valid_from(p.valid_from_s);
+  m.valid_until(p.valid_until_s);
   return m;
 }
 
@@ -125,25 +136,17 @@ std::vector<goshawk_msgs::msg::Polytope> to_msg(const std::vector<Polytope>& pol
   return m;
 }
 
-Result<Trajectory> from_msg(const std::vector<goshawk_msgs::msg::BezierPiece>& m,
-                            std::size_t polytopes) {
+Trajectory from_msg(const std::vector<goshawk_msgs::msg::BezierPiece>& m) {
   Trajectory t;
   t.pieces.reserve(m.size());
   for (const auto& item : m) {
-    if (item.polytope() >= polytopes) {
-      return fail(ErrorCode::invalid_input,
-                  "piece " + std::to_string(t.pieces.size()) + " names polytope " +
-                      std::to_string(item.polytope()) + " of " + std::to_string(polytopes));
-    }
-    BezierPiece piece;
+    BezierPiece& piece = t.pieces.emplace_back();
     piece.duration_s = item.duration();
-    piece.polytope = int(item.polytope());
+    piece.polytope = int(std::min<std::uint32_t>(item.polytope(), INT32_MAX));
     for (int j = 0; j < 6; ++j) {
       piece.control_points.col(j) = from_msg(item.control_points()[std::size_t(j)]);
     }
-    t.pieces.push_back(piece);
   }
-  if (auto status = t.check(); !status) return status.error();
   return t;
 }
 
@@ -162,11 +165,12 @@ std::vector<goshawk_msgs::msg::BezierPiece> to_msg(const Trajectory& t) {
 goshawk_msgs::msg::Certificate to_msg(const Certificate& c) {
   goshawk_msgs::msg::Certificate m;
   m.position(c.position_m);
+  m.validity(c.validity_s);
   m.velocity(c.velocity_m_s);
   m.acceleration(c.acceleration_m_s2);
-  m.joint_position(c.continuity_position_m);
-  m.joint_velocity(c.continuity_velocity_m_s);
-  m.joint_acceleration(c.continuity_acceleration_m_s2);
+  m.continuity_position(c.continuity_position_m);
+  m.continuity_velocity(c.continuity_velocity_m_s);
+  m.continuity_acceleration(c.continuity_acceleration_m_s2);
   m.start(c.start_m);
   m.goal(c.goal_m);
   m.jerk(c.jerk_m_s3);

@@ -1,23 +1,22 @@
 #include "goshawk/conversions/vehicle.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 namespace goshawk::conversions {
-namespace {
-
-Result<Eigen::Quaterniond> attitude(const geometry_msgs::msg::Quaternion& m) {
-  Eigen::Quaterniond q(m.w(), m.x(), m.y(), m.z());
+Result<Quaternion> from_msg(const geometry_msgs::msg::Quaternion& m) {
+  const Quaternion q(m.w(), m.x(), m.y(), m.z());
   if (!(std::abs(q.norm() - 1.0) < 1e-3)) {  // NaN fails as well
-    return fail(ErrorCode::invalid_input, "an attitude quaternion has length " +
-                                              std::to_string(q.norm()) +
-                                              ": it must be 1 (w is the scalar part)");
+    return fail(ErrorCode::invalid_input,
+                fmt::format("an attitude quaternion has length {:.6g}: it must be 1 (w is the "
+                            "scalar part)",
+                            q.norm()));
   }
-  return q.normalized();
+  return Quaternion(q.normalized());
 }
 
-}  // namespace
-
-geometry_msgs::msg::Quaternion to_msg(const Eigen::Quaterniond& q) {
+geometry_msgs::msg::Quaternion to_msg(const Quaternion& q) {
   geometry_msgs::msg::Quaternion m;
   m.x(q.x());
   m.y(q.y());
@@ -29,10 +28,11 @@ geometry_msgs::msg::Quaternion to_msg(const Eigen::Quaterniond& q) {
 Result<RigidBodyState> from_msg(const nav_msgs::msg::Odometry& m) {
   if (auto s = check_frame(m.header(), kMapFrame, "odometry's pose"); !s) return s.error();
   if (m.child_frame_id() != kBodyFrame) {
-    return fail(ErrorCode::wrong_frame, "odometry's twist is in frame '" + m.child_frame_id() +
-                                            "', but must be in 'base_link' (FLU)");
+    return fail(ErrorCode::wrong_frame,
+                fmt::format("odometry's twist is in frame '{}', but must be in 'base_link' (FLU)",
+                            m.child_frame_id()));
   }
-  auto q = attitude(m.pose().pose().orientation());
+  auto q = from_msg(m.pose().pose().orientation());
   if (!q) return q.error();
   RigidBodyState state;
   state.q_map_base = *q;
@@ -40,9 +40,9 @@ Result<RigidBodyState> from_msg(const nav_msgs::msg::Odometry& m) {
   state.velocity_map = *q * from_msg(m.twist().twist().linear());
   state.angular_velocity_base = from_msg(m.twist().twist().angular());
   if (!state.is_finite()) {
-    return fail(ErrorCode::invalid_input, "odometry is not finite: position " +
-                                              to_text(state.position_map) + ", velocity " +
-                                              to_text(state.velocity_map));
+    return fail(ErrorCode::invalid_input,
+                fmt::format("odometry is not finite: position {}, velocity {}",
+                            to_text(state.position_map), to_text(state.velocity_map)));
   }
   return state;
 }
@@ -60,14 +60,15 @@ Result<ThrustAttitude> from_msg(const goshawk_msgs::msg::ThrustAttitude& m) {
   if (auto s = check_frame(m.header(), kMapFrame, "a thrust and attitude command"); !s) {
     return s.error();
   }
-  auto q = attitude(m.orientation());
+  auto q = from_msg(m.orientation());
   if (!q) return q.error();
   const ThrustAttitude command{m.thrust(), *q, from_msg(m.body_rate())};
   if (!(std::isfinite(m.thrust()) && m.thrust() >= 0.0 &&
         command.angular_velocity_base.allFinite())) {
     return fail(ErrorCode::invalid_input,
-                "a command's thrust or body rate is not finite, or its thrust of " +
-                    std::to_string(m.thrust()) + " N is below zero");
+                fmt::format("a command's thrust or body rate is not finite, or its thrust of "
+                            "{:.3g} N is below zero",
+                            m.thrust()));
   }
   return command;
 }
@@ -76,15 +77,6 @@ void fill_msg(const ThrustAttitude& command, goshawk_msgs::msg::ThrustAttitude& 
   m.thrust(command.thrust_n);
   m.orientation(to_msg(command.q_map_base));
   m.body_rate(to_vector(command.angular_velocity_base));
-}
-
-double yaw_of(const Eigen::Quaterniond& q_map_base) {
-  const Vec3 x = q_map_base * Vec3::UnitX();
-  return std::atan2(x.y(), x.x());
-}
-
-Eigen::Quaterniond yaw_rotation(double yaw_rad) {
-  return Eigen::Quaterniond(Eigen::AngleAxisd(yaw_rad, Vec3::UnitZ()));
 }
 
 }  // namespace goshawk::conversions

@@ -68,4 +68,13 @@ CommittedTrajectory::CommittedTrajectory(Commitment content) : content_(std::mov
   }
 }
 
+std::vector<Polytope> CommittedTrajectory::flown_polytopes() const {
+  std::vector<Polytope> polytopes = content_.nominal.polytopes();
+  if (content_.stop) {
+    const auto& more = content_.stop->trajectory.polytopes();
+    polytopes.insert(polytopes.end(), more.begin(), more.end());
+  }
+  return polytopes;
+}
+
 }  // namespace goshawk

@@ -1,16 +1,14 @@
 #include "goshawk/core/landing.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
-#include <cstdio>
-#include <stdexcept>
 
 namespace goshawk {
 namespace {
 
 std::string metres(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g m", value);
-  return text;
+  return fmt::format("{:.3g} m", value);
 }
 
 /// The highest layer that the ground, grown, can block; negative where the map begins above it.
@@ -64,19 +62,10 @@ Status check_way_down(const VoxelGrid& grid, const Vec3& from_map, double land_h
   return answer;
 }
 
-LandingGuard::LandingGuard(const std::string& rule, double land_height_m)
-    : rule_(rule == "map"        ? Rule::map
-            : rule == "anywhere" ? Rule::anywhere
-                                 : Rule::never),
-      land_height_m_(land_height_m) {
-  if (rule_ == Rule::never && rule != "never") {
-    throw std::invalid_argument("LandingGuard: no rule is called " + rule);
-  }
-}
-
 Status LandingGuard::check(const Vec3& from_map) const {
-  if (rule_ == Rule::anywhere) return success();
-  if (rule_ == Rule::never) return fail(ErrorCode::cancelled, "the parameter landing says never");
+  if (rule_ == LandingRule::anywhere) return success();
+  if (rule_ == LandingRule::never)
+    return fail(ErrorCode::cancelled, "the parameter landing is never");
   if (grid_ == nullptr) {
     return fail(ErrorCode::no_map,
                 "no map has come yet on map/voxels to look for a free way down: is the map server "

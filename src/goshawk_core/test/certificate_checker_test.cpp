@@ -41,6 +41,10 @@ Case random_case(Random& random) {
     c.polytopes.push_back(Polytope::box(any_vector(random, 1.0) - Vec3(6, 6, 6),
                                         any_vector(random, 1.0) + Vec3(6, 6, 6)));
     c.polytopes.back().add(any_vector(random, 1.0).normalized(), random.uniform(2.0, 8.0));
+    if (random.chance(0.3)) {
+      c.polytopes.back().valid_from_s = random.uniform(-1.0, 1.0);
+      c.polytopes.back().valid_until_s = random.uniform(1.0, 12.0);
+    }
   }
   c.limits = {.v_max_m_s = random.uniform(1.0, 30.0),
               .a_max_m_s2 = random.uniform(1.0, 200.0),
@@ -75,6 +79,8 @@ goshawk_checker::Verdict second_opinion(const Case& c) {
       polytope.normals.insert(polytope.normals.end(), face.normal.begin(), face.normal.end());
       polytope.offsets.push_back(face.offset_m);
     }
+    polytope.valid_from = p.valid_from_s;
+    polytope.valid_until = p.valid_until_s;
   }
   const Limits& l = c.limits;
   return goshawk_checker::check(pieces, polytopes,
@@ -97,9 +103,10 @@ TEST(CertificateChecker, AgreesWithMeasureInEveryFamily) {
     near(a.velocity_m_s, b.velocity);
     near(a.acceleration_m_s2, b.acceleration);
     near(a.jerk_m_s3, b.jerk);
-    near(a.continuity_position_m, b.joint_position);
-    near(a.continuity_velocity_m_s, b.joint_velocity);
-    near(a.continuity_acceleration_m_s2, b.joint_acceleration);
+    near(a.validity_s, b.validity);
+    near(a.continuity_position_m, b.continuity_position);
+    near(a.continuity_velocity_m_s, b.continuity_velocity);
+    near(a.continuity_acceleration_m_s2, b.continuity_acceleration);
     near(a.start_m, b.start);
     near(a.goal_m, b.goal);
     EXPECT_EQ(a.holds(), b.holds());

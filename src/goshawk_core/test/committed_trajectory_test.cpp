@@ -44,6 +44,7 @@ TEST(CommittedTrajectory, WithoutAStopPartFliesTheNominalPart) {
   EXPECT_EQ(committed->map_version(), 8u);
   EXPECT_FALSE(committed->stop().has_value());
   EXPECT_EQ(&committed->flown(), &committed->nominal().trajectory());
+  EXPECT_EQ(committed->flown_polytopes(), kRoom);
   EXPECT_EQ(committed->yaw_at(1.0), 0.5);
 }
 
@@ -65,6 +66,7 @@ TEST(CommittedTrajectory, WithAStopPartFliesTheNominalPartUntilItBegins) {
   ASSERT_EQ(flown.pieces.size(), 2u);
   EXPECT_EQ(flown.pieces[0].polytope, 0);
   EXPECT_EQ(flown.pieces[1].polytope, 1) << "after the nominal part's polytopes";
+  EXPECT_EQ(committed->flown_polytopes(), (std::vector{kRoom[0], kRoom[0]}));
 }
 
 TEST(CommittedTrajectory, MustEndAtRest) {

@@ -130,7 +130,7 @@ TEST(WayDown, AgreesWithDistancesInRandomRooms) {
 }
 
 TEST(LandingGuard, FollowsItsRule) {
-  LandingGuard by_map("map", 0.05);
+  LandingGuard by_map(LandingRule::map, 0.05);
   EXPECT_TRUE(by_map.needs_map());
   EXPECT_EQ(by_map.check({1, 1, 2}).code(), ErrorCode::no_map);
   by_map.set_map(std::make_shared<VoxelGrid>(grid_of(room_with_floor(9))));
@@ -139,10 +139,9 @@ TEST(LandingGuard, FollowsItsRule) {
   by_map.set_map(std::make_shared<VoxelGrid>(grid_of(empty_room())));
   EXPECT_TRUE(by_map.check({1, 1, 2}));
 
-  EXPECT_TRUE(LandingGuard("anywhere", 0.05).check({1, 1, 2}));
-  EXPECT_FALSE(LandingGuard("anywhere", 0.05).needs_map());
-  EXPECT_EQ(LandingGuard("never", 0.05).check({1, 1, 2}).code(), ErrorCode::cancelled);
-  EXPECT_THROW(LandingGuard("somewhere", 0.05), std::invalid_argument);
+  EXPECT_TRUE(LandingGuard(LandingRule::anywhere, 0.05).check({1, 1, 2}));
+  EXPECT_FALSE(LandingGuard(LandingRule::anywhere, 0.05).needs_map());
+  EXPECT_EQ(LandingGuard(LandingRule::never, 0.05).check({1, 1, 2}).code(), ErrorCode::cancelled);
 }
 
 }  // namespace

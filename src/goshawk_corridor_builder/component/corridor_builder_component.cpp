@@ -15,7 +15,7 @@ namespace msg = goshawk_msgs::msg;
 
 /// Before the raw map of a version has come, its grown one serves: the same safety, less room.
 Config on_grown_grid(Config config) {
-  config.margin = "grown_grid";
+  config.margin = Margin::grown_grid;
   return config;
 }
 
@@ -39,7 +39,7 @@ class CorridorBuilderComponent : public Component {
     node.subscribe<msg::Path>(
         "path", Qos::reliable_last(),
         [this](const msg::Path& m, const MessageInfo& info) { on_path(m, info); });
-    if (config_.margin == "sphere") subscribe_raw();
+    if (config_.margin == Margin::sphere) subscribe_raw();
     reporter_.ready("builds corridors with " + std::string(builder_.implementation()));
   }
 

@@ -89,7 +89,7 @@ Status CorridorBuilder::Impl::build(const VoxelGrid& grid, const RawObstacles* r
   if (auto status = check_path(grid, path); !status) return status;
   split_path(grid.geometry, path, config.max_segment_m, points_);
   const auto blockage =
-      config.generator == "box"
+      config.generator == Generator::box
           ? box_growth_.build(grid, points_, margins_, chain_)
           : path_wrapper_.wrap(grid, layers(grid, raw), margins_, points_, chain_);
   if (blockage) return blocked(grid, path, *blockage);
@@ -101,15 +101,15 @@ Status CorridorBuilder::Impl::build(const VoxelGrid& grid, const RawObstacles* r
 }
 
 ObstacleLayers CorridorBuilder::Impl::layers(const VoxelGrid& grid, const RawObstacles* raw) const {
-  if (config.margin != "sphere") return {{{{&grid.occupied, 0.0}, {}}}, grid.geometry};
+  if (config.margin != Margin::sphere) return {{{{&grid.occupied, 0.0}, {}}}, grid.geometry};
   const double radius = raw->radius_m / grid.geometry.resolution_m;
   return {{{{raw->occupied, radius}, {raw->forbidden, 0.0}}}, grid.geometry};
 }
 
 void CorridorBuilder::Impl::improve(double resolution_m) {
-  if (config.generator == "box") measure_overlaps(chain_);
+  if (config.generator == Generator::box) measure_overlaps(chain_);
   if (!config.drop_covered) return;
-  const bool boxes = config.generator == "box";  // which measure no room around points
+  const bool boxes = config.generator == Generator::box;  // which measure no room around points
   auto room_m = [&](const PathPoint& point) {
     return (boxes ? kHalfVoxel : point.wanted) * resolution_m;
   };
@@ -139,7 +139,7 @@ Status CorridorBuilder::Impl::check_grid(const VoxelGrid& grid) {
 }
 
 Status CorridorBuilder::Impl::check_raw(const VoxelGrid& grid, const RawObstacles* raw) const {
-  if (config.margin != "sphere" || config.generator == "box") return success();
+  if (config.margin != Margin::sphere || config.generator == Generator::box) return success();
   if (raw == nullptr || raw->occupied == nullptr) {
     return fail(ErrorCode::invalid_input,
                 "margin 'sphere' needs the map before obstacles were grown: give it, or choose "
@@ -250,7 +250,7 @@ Status CorridorBuilder::build(const VoxelGrid& grid, std::span<const Vec3> waypo
 }
 
 std::string_view CorridorBuilder::implementation() const {
-  return impl_->config.generator;
+  return to_word(impl_->config.generator);
 }
 
 }  // namespace goshawk::corridor_builder

@@ -24,7 +24,7 @@ namespace {
 
 TEST(CorridorBuilder, AllocatesNothingInARepeatedQuery) {
   for (const Config& config :
-       {Config{}, Config{.generator = "box"}, Config{.margin = "sphere"},
+       {Config{}, Config{.generator = Generator::box}, Config{.margin = Margin::sphere},
         Config{.growth_passes = 2, .max_faces = 8}, Config{.bend_path = false}}) {
     CorridorBuilder builder = std::move(CorridorBuilder::create(config)).value();
     const VoxelGrid grid = test_support::boxes_and_pillars({30, 40, 20}, 0.2, 0.4, 0.2, 7);
@@ -41,7 +41,7 @@ TEST(CorridorBuilder, AllocatesNothingInARepeatedQuery) {
       ASSERT_TRUE(builder.build(grid, path, &raw, corridor).ok());
       const long before = allocations;
       ASSERT_TRUE(builder.build(grid, path, &raw, corridor).ok());
-      EXPECT_EQ(allocations, before) << config.generator << ", " << config.margin;
+      EXPECT_EQ(allocations, before) << to_word(config.generator) << ", " << to_word(config.margin);
       ++queries;
     }
     EXPECT_GT(queries, 10);

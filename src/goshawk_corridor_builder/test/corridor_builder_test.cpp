@@ -106,7 +106,7 @@ TEST(CorridorBuilder, NeverCutsIntoAnObstacleWithOtherSettings) {
 
 TEST(CorridorBuilder, BoxesNeverCutIntoAnObstacle) {
   Tally tally;
-  prove_many({.generator = "box"}, 5, 150, 15, tally);
+  prove_many({.generator = Generator::box}, 5, 150, 15, tally);
   EXPECT_GE(tally.segments, 3000);
   EXPECT_EQ(tally.disjoint, 0);
 }
@@ -169,15 +169,16 @@ TEST(CorridorBuilder, FollowsATunnelOfOneVoxelWithHalfAVoxelAtEveryTurn) {
   EXPECT_LT(corridor->min_overlap_radius_m(), 0.1);
 }
 
-class BothGenerators : public ::testing::TestWithParam<const char*> {
+class BothGenerators : public ::testing::TestWithParam<Generator> {
  protected:
   CorridorBuilder builder_ = builder_of({.generator = GetParam()});
 };
 
-INSTANTIATE_TEST_SUITE_P(Corridor, BothGenerators, ::testing::Values("ellipsoid", "box"));
+INSTANTIATE_TEST_SUITE_P(Corridor, BothGenerators,
+                         ::testing::Values(Generator::ellipsoid, Generator::box));
 
 TEST_P(BothGenerators, SaysItsName) {
-  EXPECT_EQ(builder_.implementation(), GetParam());
+  EXPECT_EQ(builder_.implementation(), to_word(GetParam()));
 }
 
 TEST_P(BothGenerators, RefusesAPathThatIsNoPath) {
@@ -311,7 +312,7 @@ TEST(CorridorBuilder, FillsAnEmptyWorldWithOnePolytope) {
 
 TEST(CorridorBuilder, ConfigFaultsAreAllListedAtOnce) {
   const auto made = CorridorBuilder::create(
-      {.generator = "magic", .local_box_m = kNaN, .max_segment_m = 0.0, .growth_passes = -1});
+      {.generator = Generator(9), .local_box_m = kNaN, .max_segment_m = 0.0, .growth_passes = -1});
   ASSERT_FALSE(made.ok());
   EXPECT_EQ(made.code(), ErrorCode::invalid_parameter);
   for (const char* name : {"generator", "local_box_m", "max_segment_m", "growth_passes"}) {
@@ -390,7 +391,7 @@ TEST(CorridorBuilder, ANewConfigBuildsAsOneThatBeganWithIt) {
   const VoxelGrid grid = world_with_wall();
   const std::vector<Vec3> path{{1.1, 1.1, 0.5}, {1.5, 1.1, 1.5}, {2.7, 1.1, 1.5}, {3.1, 1.1, 0.5}};
   Config boxes;
-  boxes.generator = "box";
+  boxes.generator = Generator::box;
   CorridorBuilder builder = builder_of({});
   ASSERT_TRUE(builder.build(grid, path));
   ASSERT_TRUE(builder.reconfigure(boxes));

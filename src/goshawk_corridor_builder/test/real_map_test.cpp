@@ -53,7 +53,7 @@ TEST_P(RealMap, NoPolytopeCutsIntoAnObstacle) {
   }
   const VoxelGrid grid = load(file.string());
   Random random(1);
-  for (const char* generator : {"ellipsoid", "box"}) {
+  for (const Generator generator : {Generator::ellipsoid, Generator::box}) {
     auto builder = std::move(CorridorBuilder::create({.generator = generator})).value();
     int corridors = 0;
     for (int k = 0; k < 150; ++k) {

@@ -44,7 +44,7 @@ Scene random_scene(int kind, Random& random) {
 }
 
 CorridorBuilder sphere_builder() {
-  return std::move(CorridorBuilder::create({.margin = "sphere"})).value();
+  return std::move(CorridorBuilder::create({.margin = Margin::sphere})).value();
 }
 
 TEST(DistanceToBox, AgreesWithKnownCases) {

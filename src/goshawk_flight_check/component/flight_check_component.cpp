@@ -55,7 +55,7 @@ class FlightCheckComponent : public Component {
   struct Leg {
     std::uint64_t id = 0;
     double end_s = 0.0;
-    std::optional<Verdict> flown;  // the part so far
+    std::optional<Verdict> flown = {};  // the part so far
     bool reported = false;
   };
 
@@ -72,31 +72,41 @@ class FlightCheckComponent : public Component {
 
   void on_commit(const msg::CommittedTrajectory& m, const MessageInfo& info) {
     finish_leg();
-    const std::uint64_t id = m.trajectory().request().id();
-    const auto received = conversions::from_msg(m.trajectory());
-    if (!received) return reporter_.failed(id, received.error());
+    const std::uint64_t id = m.nominal().request().id();
+    const auto committed = conversions::from_msg(m);
+    if (!committed) return reporter_.failed(id, committed.error());
     if (!check_)
       return reporter_.failed(id, fail(ErrorCode::no_map, "no map came yet: not judged"));
-    leg_ = Leg{id,
-               seconds(conversions::to_ns(m.start_time())) + received->trajectory.duration_s(),
-               {},
-               false};
+    leg_ = Leg{.id = id,
+               .end_s = seconds(committed->start_time_ns()) + committed->flown().duration_s()};
+    const auto [verdict, compute_ns] = timed([&] { return judge_planned(*committed); });
+    const Timing timing{.wire_ns = wire_time_ns(m.header(), info), .compute_ns = compute_ns};
+    if (!verdict) return reporter_.failed(id, verdict.error(), timing);
+    report(id, "planned", *verdict, timing);
+  }
+
+  // The nominal part to its end, and what is flown if nothing newer comes.
+  Result<Verdict> judge_planned(const CommittedTrajectory& committed) const {
+    auto nominal = judge_planned(committed.nominal().trajectory(), committed);
+    if (!nominal || !committed.stop()) return nominal;
+    auto stopped = judge_planned(committed.flown(), committed);
+    return !stopped || worse(*stopped, *nominal) ? stopped : nominal;
+  }
+
+  Result<Verdict> judge_planned(const Trajectory& trajectory,
+                                const CommittedTrajectory& committed) const {
     std::vector<PlannedPiece> pieces;
-    for (const auto& piece : received->trajectory.pieces) {
+    for (const auto& piece : trajectory.pieces) {
       PlannedPiece p;
       for (int j = 0; j < 6; ++j)
         p.control_points_map[std::size_t(j)] = piece.control_points.col(j);
       p.duration_s = piece.duration_s;
       pieces.push_back(p);
     }
-    const auto [verdict, compute_ns] = timed([&]() -> Result<Verdict> {
-      const auto track = planned_track(pieces, 0.01, m.yaw());
-      if (!track) return track.error();
-      return check_->judge(*track);
-    });
-    const Timing timing{.wire_ns = wire_time_ns(m.header(), info), .compute_ns = compute_ns};
-    if (!verdict) return reporter_.failed(id, verdict.error(), timing);
-    report(id, "planned", *verdict, timing);
+    const auto track =
+        planned_track(pieces, 0.01, [&](double t_s) { return committed.yaw_at(t_s); });
+    if (!track) return track.error();
+    return check_->judge(*track);
   }
 
   void on_odometry(const nav_msgs::msg::Odometry& m) {

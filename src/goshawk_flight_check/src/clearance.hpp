@@ -6,7 +6,7 @@
 #include <limits>
 #include <memory>
 
-#include "goshawk/core/vector.hpp"
+#include "goshawk/core/vehicle.hpp"
 #include "goshawk/flight_check/body.hpp"
 
 namespace goshawk::flight_check {
@@ -15,7 +15,7 @@ inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 struct Pose {
   Vec3 position_map = Vec3::Zero();
-  Eigen::Quaterniond q_map_base = Eigen::Quaterniond::Identity();
+  Quaternion q_map_base = Quaternion::Identity();
 };
 
 struct Clearance {

@@ -1,5 +1,7 @@
 #include "goshawk/flight_check/planned_track.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -37,16 +39,14 @@ std::string piece_fault(const PlannedPiece& piece) {
   return {};
 }
 
-Status check(std::span<const PlannedPiece> pieces, double step_s, double yaw_rad) {
+Status check(std::span<const PlannedPiece> pieces, double step_s) {
   const auto wrong = [](const std::string& what) { return fail(ErrorCode::invalid_input, what); };
   if (pieces.empty()) return wrong("the trajectory has no piece: plan again");
-  if (!(step_s > 0.0) || !std::isfinite(yaw_rad)) {
-    return wrong("a step above zero and a finite yaw are needed to sample a trajectory");
-  }
+  if (!(step_s > 0.0)) return wrong("to sample a trajectory, use a step above zero");
   double samples = 0.0;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const std::string fault = piece_fault(pieces[i]);
-    if (!fault.empty()) return wrong("piece " + std::to_string(i) + " " + fault + ": plan again");
+    if (!fault.empty()) return wrong(fmt::format("piece {} {}: plan again", i, fault));
     samples += pieces[i].duration_s / step_s + 1.0;
   }
   if (samples < kMostSamples) return success();
@@ -56,7 +56,7 @@ Status check(std::span<const PlannedPiece> pieces, double step_s, double yaw_rad
 }  // namespace
 
 /// Free fall leaves the attitude open; then the vehicle is taken to be level.
-Eigen::Quaterniond flat_attitude(const Vec3& acceleration_map, double yaw_rad) {
+Quaternion flat_attitude(const Vec3& acceleration_map, double yaw_rad) {
   const Vec3 thrust = acceleration_map + Vec3(0.0, 0.0, kGravity);
   const Vec3 up = thrust.norm() > 1e-6 ? Vec3(thrust.normalized()) : Vec3::UnitZ();
   const Vec3 heading(std::cos(yaw_rad), std::sin(yaw_rad), 0.0);
@@ -66,12 +66,12 @@ Eigen::Quaterniond flat_attitude(const Vec3& acceleration_map, double yaw_rad) {
                             : Vec3(-std::sin(yaw_rad), std::cos(yaw_rad), 0.0);
   Eigen::Matrix3d R_map_base;
   R_map_base << left.cross(up), left, up;
-  return Eigen::Quaterniond(R_map_base).normalized();
+  return Quaternion(Eigen::Quaterniond(R_map_base).normalized());
 }
 
 Result<std::vector<Sample>> planned_track(std::span<const PlannedPiece> pieces, double step_s,
-                                          double yaw_rad) {
-  if (auto status = check(pieces, step_s, yaw_rad); !status) return status.error();
+                                          const std::function<double(double)>& yaw_rad_at) {
+  if (auto status = check(pieces, step_s); !status) return status.error();
   std::vector<Sample> track;
   double start_s = 0.0;
   for (const PlannedPiece& piece : pieces) {
@@ -79,8 +79,13 @@ Result<std::vector<Sample>> planned_track(std::span<const PlannedPiece> pieces, 
     for (int k = track.empty() ? 0 : 1; k <= steps; ++k) {
       const double u = double(k) / steps;
       const Moved moved = evaluate(piece, u);
-      track.push_back({start_s + u * piece.duration_s, moved.position_map,
-                       flat_attitude(moved.acceleration_map, yaw_rad)});
+      const double t_s = start_s + u * piece.duration_s;
+      const double yaw_rad = yaw_rad_at ? yaw_rad_at(t_s) : 0.0;
+      if (!std::isfinite(yaw_rad)) {
+        return fail(ErrorCode::invalid_input,
+                    fmt::format("its yaw at {:.3g} s is not finite", t_s));
+      }
+      track.push_back({t_s, moved.position_map, flat_attitude(moved.acceleration_map, yaw_rad)});
     }
     start_s += piece.duration_s;
   }

@@ -1,5 +1,7 @@
 #include "goshawk/flight_check/track_file.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <fstream>
@@ -28,10 +30,11 @@ Error wrong(const std::filesystem::path& file, const std::string& what) {
   return fail(ErrorCode::invalid_input, "'" + file.string() + "' " + what);
 }
 
-// Where each wanted column stands.
+// Where each wanted column stands; the optional one last, if it is there.
 Result<std::vector<std::size_t>> find_columns(const std::filesystem::path& file,
                                               const std::string& head,
-                                              const std::vector<std::string>& wanted) {
+                                              const std::vector<std::string>& wanted,
+                                              const std::string& optional) {
   const auto names = split(head);
   std::vector<std::size_t> columns;
   for (const auto& name : wanted) {
@@ -39,17 +42,20 @@ Result<std::vector<std::size_t>> find_columns(const std::filesystem::path& file,
     if (at == names.end()) return wrong(file, "has no column " + name);
     columns.push_back(std::size_t(at - names.begin()));
   }
+  const auto at = std::ranges::find(names, optional);
+  if (at != names.end()) columns.push_back(std::size_t(at - names.begin()));
   return columns;
 }
 
 Result<std::vector<Row>> read_table(const std::filesystem::path& file,
-                                    const std::vector<std::string>& wanted) {
+                                    const std::vector<std::string>& wanted,
+                                    const std::string& optional = "") {
   std::ifstream in(file);
   std::string line;
   if (!in || !std::getline(in, line)) {
     return fail(ErrorCode::io_failed, "'" + file.string() + "' cannot be read: is it there?");
   }
-  const auto columns = find_columns(file, line, wanted);
+  const auto columns = find_columns(file, line, wanted, optional);
   if (!columns) return columns.error();
   std::vector<Row> rows;
   for (int number = 2; std::getline(in, line); ++number) {
@@ -60,7 +66,7 @@ Result<std::vector<Row>> read_table(const std::filesystem::path& file,
       const std::string part = column < parts.size() ? parts[column] : "";
       const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), value);
       if (error != std::errc{} || end != part.data() + part.size()) {
-        return wrong(file, "line " + std::to_string(number) + ": '" + part + "' is no number");
+        return wrong(file, fmt::format("line {}: '{}' is not a number", number, part));
       }
       row.push_back(value);
     }
@@ -76,22 +82,24 @@ Result<std::vector<Sample>> read_flown_csv(const std::filesystem::path& file) {
   if (!rows) return rows.error();
   std::vector<Sample> track;
   for (const auto& r : *rows) {
-    track.push_back({r[0], {r[1], r[2], r[3]}, Eigen::Quaterniond(r[4], r[5], r[6], r[7])});
+    track.push_back({r[0], {r[1], r[2], r[3]}, Quaternion(r[4], r[5], r[6], r[7])});
   }
   return track;
 }
 
 Result<std::vector<std::vector<Sample>>> read_planned_csv(const std::filesystem::path& file,
                                                           double yaw_rad) {
-  const auto rows =
-      read_table(file, {"leg", "t_s", "x_m", "y_m", "z_m", "ax_m_s2", "ay_m_s2", "az_m_s2"});
+  const std::vector<std::string> wanted{"leg", "t_s",     "x_m",     "y_m",
+                                        "z_m", "ax_m_s2", "ay_m_s2", "az_m_s2"};
+  const auto rows = read_table(file, wanted, "yaw_rad");
   if (!rows) return rows.error();
   std::vector<std::vector<Sample>> legs;
   const double* leg = nullptr;
   for (const auto& r : *rows) {
     if (leg == nullptr || *leg != r[0]) legs.emplace_back();
     leg = r.data();
-    legs.back().push_back({r[1], {r[2], r[3], r[4]}, flat_attitude({r[5], r[6], r[7]}, yaw_rad)});
+    const double yaw = r.size() > wanted.size() ? r.back() : yaw_rad;
+    legs.back().push_back({r[1], {r[2], r[3], r[4]}, flat_attitude({r[5], r[6], r[7]}, yaw)});
   }
   return legs;
 }

@@ -56,12 +56,26 @@ TEST(PlannedTrack, FollowsTheCurveAndItsTimes) {
 TEST(PlannedTrack, KeepsTheYawAndJoinsPieces) {
   const std::vector<PlannedPiece> pieces{line({0, 0, 1}, {1, 0, 1}, 0.5),
                                          line({1, 0, 1}, {1, 1, 1}, 0.7)};
-  const auto track = planned_track(pieces, 0.1, 0.8).value();
+  const auto track = planned_track(pieces, 0.1, [](double) { return 0.8; }).value();
   EXPECT_EQ(track.size(), 1U + 5U + 7U);
   EXPECT_NEAR(track.back().t_s, 1.2, 1e-12);
   for (const Sample& s : track) {
     EXPECT_LT((s.q_map_base * Vec3::UnitX() - Vec3(std::cos(0.8), std::sin(0.8), 0)).norm(), 1e-9);
   }
+}
+
+TEST(PlannedTrack, TurnsAsItsYawIsPlanned) {
+  const std::vector<PlannedPiece> pieces{line({0, 0, 1}, {1, 0, 1}, 0.5),
+                                         line({1, 0, 1}, {1, 1, 1}, 0.7)};
+  const auto turning = [](double t_s) { return 2.0 * t_s - 0.5; };
+  const auto track = planned_track(pieces, 0.1, turning).value();
+  ASSERT_EQ(track.size(), 13U);
+  for (const Sample& s : track) {
+    const Vec3 heading = s.q_map_base * Vec3::UnitX();
+    EXPECT_NEAR(std::atan2(heading.y(), heading.x()), turning(s.t_s), 1e-9) << s.t_s;
+  }
+  const auto lost = [](double t_s) { return t_s < 0.6 ? 0.0 : NAN; };
+  EXPECT_EQ(planned_track(pieces, 0.1, lost).code(), ErrorCode::invalid_input);
 }
 
 TEST(PlannedTrack, IsJudgedLikeAFlownOne) {

@@ -67,6 +67,22 @@ TEST_F(TrackFile, ReadsPlannedLegsApartWithTheAttitudeOfTheirAcceleration) {
   EXPECT_NEAR(up.z(), std::sqrt(0.5), 1e-9);
 }
 
+TEST_F(TrackFile, TurnsAPlannedLegByItsYawColumnElseAsTold) {
+  const std::string head = "leg,t_s,x_m,y_m,z_m,ax_m_s2,ay_m_s2,az_m_s2";
+  const auto heading = [](const Sample& s) {
+    const Vec3 x = s.q_map_base * Vec3::UnitX();
+    return std::atan2(x.y(), x.x());
+  };
+  const auto with =
+      read_planned_csv(write(head + ",yaw_rad\n1,0,0,0,1,0,0,0,0.25\n1,1,1,0,1,0,0,0,-1.5\n"), 9.0);
+  ASSERT_TRUE(with) << with.error().message;
+  EXPECT_NEAR(heading((*with)[0][0]), 0.25, 1e-12);
+  EXPECT_NEAR(heading((*with)[0][1]), -1.5, 1e-12);
+  const auto without = read_planned_csv(write(head + "\n1,0,0,0,1,0,0,0\n"), 0.75);
+  ASSERT_TRUE(without) << without.error().message;
+  EXPECT_NEAR(heading((*without)[0][0]), 0.75, 1e-12);
+}
+
 TEST(Payload, OfAMessageGivesTheSameVerdictAsTheTreeAndBadBytesNone) {
   auto tree = test::tree_of(test::wall_at_x(10, 5));
   std::ostringstream bytes;

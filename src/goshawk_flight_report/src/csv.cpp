@@ -35,6 +35,8 @@ void append_trajectory(std::string& text, const Leg& leg, std::size_t number, in
     for (const Vec3& v : {state.position, state.velocity, state.acceleration, state.jerk}) {
       append(text, v);
     }
+    text += ',';
+    append(text, leg.yaw_at(t_s));
     text += '\n';
   }
 }
@@ -66,7 +68,8 @@ Status write_trajectory_csv(const Flight& flight, const std::filesystem::path& f
     return fail(ErrorCode::invalid_input, "more than 10^7 rows: use a longer step");
   }
   std::string text =
-      "leg,t_s,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s,ax_m_s2,ay_m_s2,az_m_s2,jx_m_s3,jy_m_s3,jz_m_s3\n";
+      "leg,t_s,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s,ax_m_s2,ay_m_s2,az_m_s2,jx_m_s3,jy_m_s3,jz_m_s3,"
+      "yaw_rad\n";
   for (std::size_t i = 0; i < flight.legs.size(); ++i) {
     const Leg& leg = flight.legs[i];
     if (leg.trajectory.pieces.empty()) continue;

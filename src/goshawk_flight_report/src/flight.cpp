@@ -46,6 +46,12 @@ Status check_leg(const Leg& leg, const std::string& name) {
     }
   }
   if (!std::isfinite(leg.start_t_s)) return wrong(name + " has a start time that is not finite");
+  if (!std::isfinite(leg.yaw_rad)) return wrong(name + " has a yaw that is not finite");
+  if (leg.yaw_curve) {
+    if (auto status = leg.yaw_curve->check(); !status) {
+      return wrong(name + ": " + status.error().message);
+    }
+  }
   if (leg.trajectory.pieces.empty()) return success();
   if (auto status = leg.trajectory.check(); !status) {
     return wrong(name + " has a bad trajectory: " + status.error().message);
@@ -77,6 +83,16 @@ bool empty(const Leg& leg) {
 }
 
 }  // namespace
+
+Leg Leg::of(const CommittedTrajectory& committed, std::int64_t origin_ns) {
+  Leg leg;
+  leg.corridor = committed.flown_polytopes();
+  leg.trajectory = committed.flown();
+  leg.start_t_s = double(committed.start_time_ns() - origin_ns) * 1e-9;
+  leg.yaw_rad = committed.yaw_rad();
+  leg.yaw_curve = committed.yaw_curve();
+  return leg;
+}
 
 Status Flight::check() const {
   if (auto status = limits.check(); !status) return wrong(status.error().message);

@@ -174,6 +174,8 @@ TEST_F(Draw, BadFlightsAreRefusedWithTheirFault) {
               HasSubstr("polytope"));
   EXPECT_THAT(fault([&](Flight& f) { f.legs[0].trajectory.pieces[0].duration_s = 0.0; }),
               HasSubstr("trajectory"));
+  EXPECT_THAT(fault([&](Flight& f) { f.legs[1].yaw_rad = nan; }), HasSubstr("leg 1 has a yaw"));
+  EXPECT_THAT(fault([&](Flight& f) { f.legs[1].yaw_curve = YawCurve{}; }), HasSubstr("yaw curve"));
   EXPECT_THAT(fault([&](Flight& f) { f.limits.v_max_m_s = 0.0; }), HasSubstr("cannot be drawn"));
   EXPECT_THAT(fault([&](Flight& f) { f.body_radius_m = nan; }), HasSubstr("radius"));
   VoxelGrid broken = sample.obstacles;

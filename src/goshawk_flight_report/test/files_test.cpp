@@ -73,7 +73,7 @@ TEST_F(Files, TrajectoryRowsLieOnTheTrajectoriesOfTheirLegs) {
   ASSERT_GT(table.rows.size(), 300U);
   double last_s[2] = {-1.0, -1.0};
   for (const auto& row : table.rows) {
-    ASSERT_EQ(row.size(), 14U);
+    ASSERT_EQ(row.size(), 15U);
     const auto leg_number = std::size_t(row[0]);
     ASSERT_LT(leg_number, 2U);
     const Leg& leg = sample.flight.legs[leg_number];
@@ -82,6 +82,7 @@ TEST_F(Files, TrajectoryRowsLieOnTheTrajectoriesOfTheirLegs) {
     EXPECT_LT((vec(row, 2) - state.position).norm(), 1e-9);
     EXPECT_LT((vec(row, 5) - state.velocity).norm(), 1e-9);
     EXPECT_LT((vec(row, 8) - state.acceleration).norm(), 1e-6);
+    EXPECT_EQ(row[14], leg.yaw_at(row[1] - leg.start_t_s));
     last_s[leg_number] = row[1];
   }
   for (std::size_t i = 0; i < 2; ++i) {

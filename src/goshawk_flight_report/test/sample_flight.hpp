@@ -79,6 +79,7 @@ struct SampleFlight {
     constexpr int kSegments = 4;
     Leg leg;
     leg.start_t_s = start_t_s;
+    leg.yaw_curve = YawCurve{1.5, {0.0, 0.5, 1.5, 1.0}};
     std::vector<FlatState> joints(kSegments + 1);
     const double segment_s = (to - from).norm() / kSegments / 1.4;
     for (int k = 0; k <= kSegments; ++k) {

@@ -110,7 +110,7 @@ int report(const std::string& path, double inflation_m) {
     watch.lap_s();
     const auto grid = make_voxel_grid(*raw, {policy, inflation_m}, 1);
     const double grow_s = watch.lap_s();
-    const std::string name(to_string(policy));
+    const std::string name(to_word(policy));
     if (!grid) {
       std::printf("unknown %-8s: %s\n", name.c_str(), grid.error().message.c_str());
       continue;

@@ -1,5 +1,6 @@
 #include "goshawk/map_server/voxel_map.hpp"
 
+#include <fmt/format.h>
 #include <octomap/OcTree.h>
 
 #include <algorithm>
@@ -116,25 +117,6 @@ Result<RawVoxels> voxelize(const octomap::OcTree& tree, const VoxelizeOptions& o
               "the map's bits do not fit into memory: give a smaller box");
 }
 
-std::string_view to_string(UnknownPolicy policy) {
-  switch (policy) {
-    case UnknownPolicy::occupied:
-      return "occupied";
-    case UnknownPolicy::blocked:
-      return "blocked";
-    case UnknownPolicy::free:
-      return "free";
-  }
-  return "";
-}
-
-std::optional<UnknownPolicy> unknown_policy(std::string_view word) {
-  for (const auto policy : {UnknownPolicy::occupied, UnknownPolicy::blocked, UnknownPolicy::free}) {
-    if (to_string(policy) == word) return policy;
-  }
-  return {};
-}
-
 Result<VoxelGrid> grow(const RawVoxels& raw, const Growth& growth, std::uint64_t version) {
   VoxelGrid grid;
   grid.geometry = raw.geometry;
@@ -196,10 +178,10 @@ Result<VoxelGrid> make_voxel_grid(const RawVoxels& raw, const Growth& growth,
   auto grid = grow(raw, growth, version);
   if (grid && grid->occupied.count() == grid->occupied.voxels()) {
     return fail(ErrorCode::map_empty,
-                "no voxel of the map is free after obstacles grew by " +
-                    std::to_string(growth.inflation_m) + " m with unknown space " +
-                    std::string(to_string(growth.unknown)) +
-                    ": use a smaller radius or margin, or treat unknown space as free");
+                fmt::format("no voxel of the map is free after obstacles were inflated by {:.3g} m "
+                            "with unknown space {}: use a smaller radius or margin, or treat "
+                            "unknown space as free",
+                            growth.inflation_m, to_word(growth.unknown)));
   }
   return grid;
 } catch (const std::bad_alloc&) {

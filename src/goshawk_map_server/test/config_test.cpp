@@ -2,9 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include <algorithm>
 #include <set>
-#include <stdexcept>
 
 namespace goshawk::map_server {
 namespace {
@@ -14,11 +12,6 @@ struct Checker {
   std::set<std::string> names;
   bool all_valid = true;
 
-  void operator()(const char* name, const std::string& value, const char*, const char*,
-                  const OneOf& rule) {
-    names.insert(name);
-    all_valid &= std::count(rule.choices.begin(), rule.choices.end(), value) == 1;
-  }
   template <typename T>
   void operator()(const char* name, const T& value, const char*, const char*, const Range& rule) {
     names.insert(name);
@@ -36,22 +29,6 @@ TEST(Config, DefaultsAreValidAndEveryParameterIsDescribed) {
   describe(config, checker);
   EXPECT_TRUE(checker.all_valid);
   EXPECT_EQ(checker.names.size(), 16U);
-}
-
-TEST(Config, EveryAllowedWordIsUnderstood) {
-  for (const std::string word : {"occupied", "blocked", "free"}) {
-    Config config;
-    config.unknown = word;
-    EXPECT_EQ(to_string(growth(config).unknown), word);
-  }
-  for (const std::string word : {"map", "points", "scan"}) {
-    Config config;
-    config.cloud_meaning = word;
-    EXPECT_NO_THROW((void)load_options(config));
-  }
-  Config config;
-  config.unknown = "perhaps";
-  EXPECT_THROW((void)growth(config), std::invalid_argument);
 }
 
 TEST(Config, InflationIsRadiusPlusMarginAndTheBoxIsOnlyUsedOnDemand) {

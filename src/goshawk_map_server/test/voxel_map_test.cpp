@@ -78,7 +78,7 @@ TEST(MakeVoxelGrid, BlocksWhatTheDefinitionBlocksUnderEachPolicy) {
       for (int y = 0; y < n.y; ++y) {
         for (int x = 0; x < n.x; ++x) {
           ASSERT_EQ(grid->occupied.get({x, y, z}), blocked_by_definition(raw, growth, {x, y, z}))
-              << to_string(growth.unknown) << " " << growth.inflation_m << " at "
+              << to_word(growth.unknown) << " " << growth.inflation_m << " at "
               << to_text(Index3{x, y, z});
         }
       }
@@ -200,13 +200,6 @@ TEST(Voxelize, AnEmptyTreeOrABadBoxIsRefused) {
   VoxelizeOptions options;
   options.box = Box{Vec3::Ones(), Vec3::Zero()};
   EXPECT_EQ(voxelize(nothing, options).code(), ErrorCode::invalid_parameter);
-}
-
-TEST(UnknownPolicy, WordsGoBothWays) {
-  for (const auto policy : {UnknownPolicy::occupied, UnknownPolicy::blocked, UnknownPolicy::free}) {
-    EXPECT_EQ(unknown_policy(to_string(policy)), policy);
-  }
-  EXPECT_FALSE(unknown_policy("perhaps"));
 }
 
 }  // namespace

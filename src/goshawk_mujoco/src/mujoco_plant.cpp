@@ -13,7 +13,7 @@ namespace {
 
 using plant::PlantState;
 using plant::VehicleParameters;
-using Vec4 = Eigen::Vector4d;
+using Vec4 = Vec4;
 
 constexpr int kSubsteps = 2;
 constexpr int kBody = 1;  // 0 is the world

@@ -11,7 +11,7 @@ namespace {
 
 using plant::PlantState;
 using plant::VehicleParameters;
-using Vec4 = Eigen::Vector4d;
+using Vec4 = Vec4;
 
 PlantState hovering(const VehicleParameters& p) {
   PlantState state;

@@ -61,7 +61,7 @@ class NavigatorComponent : public Component {
         "odom", Qos::best_effort(), [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) {
           const auto state = conversions::from_msg(m);
           if (!state) return;  // the tracker reports bad odometry
-          navigator_.on_odometry(state->position_map, state->velocity_map, node_.monotonic_ns());
+          navigator_.on_odometry(*state, node_.monotonic_ns());
         });
     node_.subscribe<msg::BezierTrajectory>(
         "trajectory", Qos::reliable_last(),
@@ -77,9 +77,9 @@ class NavigatorComponent : public Component {
     Status status = conversions::check_frame(m.header(), conversions::kMapFrame, "a goal");
     if (status) {
       const auto& q = m.pose().orientation();
-      const Eigen::Quaterniond rotation(q.w(), q.x(), q.y(), q.z());
-      status = navigator_.on_goal(conversions::from_msg(m.pose().position()),
-                                  conversions::yaw_of(rotation), node_.monotonic_ns());
+      status =
+          navigator_.on_goal(conversions::from_msg(m.pose().position()),
+                             yaw_of(Quaternion(q.w(), q.x(), q.y(), q.z())), node_.monotonic_ns());
     }
     if (!status) {
       reporter_.fault(status.error());
@@ -92,19 +92,28 @@ class NavigatorComponent : public Component {
   }
 
   void on_trajectory(const msg::BezierTrajectory& m, const MessageInfo& info) {
-    auto received = conversions::from_msg(m);
-    if (!received) {
-      navigator_.on_report(m.request().id(), "trajectory_optimizer", received.error(),
+    auto candidate = candidate_of(m);
+    if (!candidate) {
+      navigator_.on_report(m.request().id(), "trajectory_optimizer", candidate.error(),
                            node_.monotonic_ns());
-      reporter_.failed(m.request().id(), received.error());
+      reporter_.failed(m.request().id(), candidate.error());
     } else {
       wire_ns_ = wire_time_ns(m.header(), info);
       candidate_ = m;
-      candidate_received_ = *received;
-      navigator_.on_trajectory(m.request().id(), std::move(received->trajectory),
-                               node_.monotonic_ns());
+      navigator_.on_trajectory(*std::move(candidate), node_.monotonic_ns());
     }
     carry_out();
+  }
+
+  static Result<Commitment> candidate_of(const msg::BezierTrajectory& m) {
+    auto nominal = conversions::from_msg(m);
+    if (!nominal) return nominal.error();
+    auto yaw_curve = conversions::yaw_curve_of(m);
+    if (!yaw_curve) return yaw_curve.error();
+    return Commitment{.id = m.request().id(),
+                      .nominal = *std::move(nominal),
+                      .map_version = m.map_version(),
+                      .yaw_curve = *std::move(yaw_curve)};
   }
 
   void on_report(const msg::StageReport& m) {
@@ -122,34 +131,30 @@ class NavigatorComponent : public Component {
     }
   }
 
-  void publish(const PlanOrder& order) {
-    const conversions::PlanRequest request{.id = order.id,
-                                           .stamp_ns = order.stamp_ns,
-                                           .start = order.start,
-                                           .goal = order.goal,
-                                           .goal_yaw_rad = order.yaw_rad,
-                                           .limits = config_.limits(),
-                                           .deadline_s = order.deadline_s};
-    auto m = conversions::to_msg(request);
-    m.header().stamp(conversions::to_stamp(node_.now_ns()));
-    reporter_.send(requests_, m);
-  }
-
   std::int64_t to_wall_ns(std::int64_t monotonic_ns) const {
     return monotonic_ns + (node_.now_ns() - node_.monotonic_ns());
   }
 
-  void publish(const CommitOrder& order) {
-    const std::int64_t start_ns = to_wall_ns(order.start_time_ns);
+  void publish(const PlanRequest& request) {
+    auto m = conversions::to_msg(request);
+    m.header().stamp(conversions::to_stamp(node_.now_ns()));
+    if (request.start_time_ns) {
+      m.start_time(conversions::to_stamp(to_wall_ns(*request.start_time_ns)));
+    }
+    reporter_.send(requests_, m);
+  }
+
+  void publish(const CommittedTrajectory& committed) {
     msg::CommittedTrajectory m;
     m.header(conversions::make_header(node_.now_ns()));
+    m.nominal(candidate_);
+    conversions::fill_msg(committed, m);
+    const std::int64_t start_ns = to_wall_ns(committed.start_time_ns());
     m.start_time(conversions::to_stamp(start_ns));
-    m.yaw(order.yaw_rad);
-    m.trajectory(candidate_);
     reporter_.send(commits_, m);
-    reporter_.answered(order.id, {.wire_ns = wire_ns_, .compute_ns = 0});
-    reporter_.send(path_lines_, path_line(candidate_received_.trajectory, start_ns, 0.05));
-    reporter_.send(markers_, corridor_markers(candidate_received_, start_ns));
+    reporter_.answered(committed.id(), {.wire_ns = wire_ns_, .compute_ns = 0});
+    reporter_.send(path_lines_, path_line(committed.flown(), start_ns, 0.05));
+    reporter_.send(markers_, corridor_markers(committed, start_ns));
   }
 
   void publish(const StateOrder& order) {
@@ -174,7 +179,6 @@ class NavigatorComponent : public Component {
   Publisher<nav_msgs::msg::Path> path_lines_;
   Publisher<visualization_msgs::msg::MarkerArray> markers_;
   msg::BezierTrajectory candidate_;  // the newest certified one, to commit
-  conversions::ReceivedTrajectory candidate_received_;
   msg::NavigatorState state_message_;
   std::int64_t wire_ns_ = 0;
 };

@@ -61,8 +61,8 @@ nav_msgs::msg::Path path_line(const Trajectory& trajectory, std::int64_t stamp_n
   return path;
 }
 
-visualization_msgs::msg::MarkerArray corridor_markers(
-    const conversions::ReceivedTrajectory& received, std::int64_t stamp_ns) {
+visualization_msgs::msg::MarkerArray corridor_markers(const CommittedTrajectory& committed,
+                                                      std::int64_t stamp_ns) {
   visualization_msgs::msg::MarkerArray array;
   Marker edges;
   edges.header(conversions::make_header(stamp_ns));
@@ -74,7 +74,7 @@ visualization_msgs::msg::MarkerArray corridor_markers(
   edges.color().g(0.6F);
   edges.color().b(0.9F);
   edges.color().a(0.8F);
-  for (const auto& polytope : received.polytopes) add_edges(polytope, edges.points());
+  for (const auto& polytope : committed.flown_polytopes()) add_edges(polytope, edges.points());
   array.markers().push_back(std::move(edges));
   return array;
 }

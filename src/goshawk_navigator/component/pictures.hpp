@@ -10,7 +10,7 @@ namespace goshawk::navigator {
 nav_msgs::msg::Path path_line(const Trajectory& trajectory, std::int64_t stamp_ns, double step_s);
 
 /// The corridor's edges and the start and the goal, for viewers that draw markers.
-visualization_msgs::msg::MarkerArray corridor_markers(
-    const conversions::ReceivedTrajectory& received, std::int64_t stamp_ns);
+visualization_msgs::msg::MarkerArray corridor_markers(const CommittedTrajectory& committed,
+                                                      std::int64_t stamp_ns);
 
 }  // namespace goshawk::navigator

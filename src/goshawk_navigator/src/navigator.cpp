@@ -1,8 +1,11 @@
 #include "goshawk/navigator/navigator.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace goshawk::navigator {
 namespace {
@@ -54,9 +57,9 @@ Status Navigator::reconfigure(const Config& config) {
 
 Status Navigator::on_goal(const Vec3& goal_map, double yaw_rad, std::int64_t now_ns) {
   if (!goal_map.allFinite() || !std::isfinite(yaw_rad)) {
-    return fail(ErrorCode::invalid_input, "goal " + to_text(goal_map) + " with yaw " +
-                                              std::to_string(yaw_rad) +
-                                              " is not finite: it is ignored");
+    return fail(ErrorCode::invalid_input,
+                fmt::format("goal {} with yaw {:.3g} is not finite: it is ignored",
+                            to_text(goal_map), yaw_rad));
   }
   goal_ = {goal_map, yaw_rad};
   goal_open_ = true;
@@ -64,41 +67,44 @@ Status Navigator::on_goal(const Vec3& goal_map, double yaw_rad, std::int64_t now
   retry_ns_ = 0;
   wait_begin_ns_ = now_ns;
   lead_s_ = config_.replan_lead_s;
-  open_.reset();
+  drop_open();
   enter(flight_ ? State::flying : State::planning);
   plan(now_ns);
   return success();
 }
 
-void Navigator::on_odometry(const Vec3& position_map, const Vec3& velocity_map,
-                            std::int64_t now_ns) {
-  position_map_ = position_map;
-  velocity_map_ = velocity_map;
+void Navigator::on_odometry(const RigidBodyState& vehicle, std::int64_t now_ns) {
+  vehicle_ = vehicle;
   odometry_ns_ = now_ns;
 }
 
-void Navigator::on_trajectory(std::uint64_t id, Trajectory trajectory, std::int64_t now_ns) {
-  if (!open_ || id != open_->id) return;
+void Navigator::on_trajectory(Commitment candidate, std::int64_t now_ns) {
+  if (!open_ || candidate.id != open_->id) return;
   if (open_->switch_ns && now_ns > *open_->switch_ns - to_ns(kSwitchSlack_s)) {
     lead_s_ *= 2.0;
+    open_.reset();
     return plan_again(fail(ErrorCode::deadline_exceeded,
-                           "the plan came too late for the moment it begins at: with a lead of " +
-                               std::to_string(lead_s_) + " s next"),
+                           fmt::format("the plan came too late for the moment it begins at: the "
+                                       "next one begins {:.3g} s ahead",
+                                       lead_s_)),
                       now_ns);
   }
-  const std::int64_t start_ns = open_->switch_ns.value_or(now_ns + to_ns(config_.commit_lead_s));
-  const std::int64_t end_ns = start_ns + to_ns(trajectory.duration_s());
-  flight_ = Flight{id, std::move(trajectory), start_ns, end_ns, goal_};
+  candidate.start_time_ns = open_->switch_ns.value_or(now_ns + to_ns(config_.commit_lead_s));
+  candidate.yaw_rad = goal_.yaw_rad;
+  auto committed = CommittedTrajectory::make(std::move(candidate));
+  if (!committed) return give_up(committed.error());
+  const std::int64_t end_ns = committed->start_time_ns() + to_ns(committed->flown().duration_s());
+  orders_.push_back(*committed);
+  flight_ = Flight{*std::move(committed), end_ns, goal_};
   open_.reset();
   goal_open_ = false;
-  orders_.push_back(CommitOrder{id, start_ns, goal_.yaw_rad});
   enter(State::flying);
 }
 
 void Navigator::on_report(std::uint64_t id, std::string_view stage, const Error& outcome,
                           std::int64_t now_ns) {
   if (stage == "tracker") {
-    if (flight_ && id == flight_->id && outcome.code != ErrorCode::ok) {
+    if (flight_ && id == flight_->committed.id() && outcome.code != ErrorCode::ok) {
       tracker_failed(outcome, now_ns);
     }
     return;
@@ -108,6 +114,7 @@ void Navigator::on_report(std::uint64_t id, std::string_view stage, const Error&
     open_->last_stage = stage;
   } else {
     const Error reason{outcome.code, std::string(stage) + ": " + outcome.message};
+    open_.reset();  // it is answered: nothing to drop
     passes_by_itself(outcome.code) ? plan_again(reason, now_ns) : give_up(reason);
   }
 }
@@ -123,10 +130,8 @@ void Navigator::plan(std::int64_t now_ns) {
   if (now_ns < retry_ns_) return;
   const std::int64_t ahead_ns = now_ns + to_ns(lead_s_);
   if (flight_ && ahead_ns < flight_->end_ns) {
-    const std::int64_t switch_ns = std::max(ahead_ns, flight_->start_ns);
-    const double t_s = double(switch_ns - flight_->start_ns) * 1e-9;
-    return ask(flight_->trajectory.sample(std::min(t_s, flight_->trajectory.duration_s())),
-               switch_ns, now_ns);
+    const std::int64_t start_ns = flight_->committed.start_time_ns();
+    return ask(start_on(*flight_, std::max(ahead_ns, start_ns)), now_ns);
   }
   // Odometry that was only just discovered, a trajectory that is just ending, a vehicle that brakes
   // by itself: all of these pass.
@@ -139,37 +144,70 @@ void Navigator::plan(std::int64_t now_ns) {
                  : "no odometry comes, so there is nowhere to plan from: is the vehicle, or the "
                    "simulator, running?"));
   }
-  FlatState start;
-  const bool holds_end =
-      flight_ && (position_map_ - flight_->goal.position_map).norm() < config_.arrival_tolerance_m;
-  start.position = holds_end ? flight_->goal.position_map : position_map_;
-  ask(start, {}, now_ns);
+  ask(start_at_rest(), now_ns);
 }
 
-void Navigator::ask(const FlatState& start, std::optional<std::int64_t> switch_ns,
-                    std::int64_t now_ns) {
+Navigator::Start Navigator::start_on(const Flight& flight, std::int64_t time_ns) const {
+  const CommittedTrajectory& committed = flight.committed;
+  const Trajectory& flown = committed.flown();
+  const double t_s = double(time_ns - committed.start_time_ns()) * 1e-9;
+  Start start{.state = flown.sample(std::min(t_s, flown.duration_s())),
+              .yaw_rad = yaw_of(vehicle_.q_map_base),
+              .time_ns = time_ns};
+  start.state.jerk.setZero();
+  // Without a curve the tracker turns as fast as it can: where to is known, not how far it is.
+  if (const auto& curve = committed.yaw_curve()) {
+    start.yaw_rad = curve->yaw_rad(t_s);
+    start.yaw_rate_rad_s = curve->rate_rad_s(t_s);
+  }
+  return start;
+}
+
+Navigator::Start Navigator::start_at_rest() const {
+  const Vec3& here = vehicle_.position_map;
+  const bool holds_end =
+      flight_ && (here - flight_->goal.position_map).norm() < config_.arrival_tolerance_m;
+  return {.state = {.position = holds_end ? flight_->goal.position_map : here},
+          .yaw_rad = yaw_of(vehicle_.q_map_base),
+          .yaw_rate_rad_s = (vehicle_.q_map_base * vehicle_.angular_velocity_base).z()};
+}
+
+void Navigator::ask(const Start& start, std::int64_t now_ns) {
   ++attempts_;
-  open_ = Open{next_id_++, now_ns, switch_ns, ""};
-  FlatState goal;
-  goal.position = goal_.position_map;
-  FlatState from = start;
-  from.jerk.setZero();
-  orders_.push_back(
-      PlanOrder{open_->id, now_ns, from, goal, goal_.yaw_rad, config_.plan_timeout_s});
+  open_ = Open{next_id_++, now_ns, start.time_ns, ""};
+  PlanRequest request;
+  request.id = open_->id;
+  request.stamp_ns = now_ns;
+  request.start_time_ns = start.time_ns;
+  request.start = start.state;
+  request.start_yaw_rad = start.yaw_rad;
+  request.start_yaw_rate_rad_s = start.yaw_rate_rad_s;
+  request.goal.position = goal_.position_map;
+  request.goal_yaw_rad = goal_.yaw_rad;
+  request.limits = config_.limits();
+  request.deadline_s = config_.plan_timeout_s;
+  request.supersedes = std::exchange(dropped_id_, 0);
+  request.unknown = config_.unknown;
+  orders_.push_back(std::move(request));
   enter(flight_ && now_ns < flight_->end_ns ? State::flying : State::planning);
 }
 
-void Navigator::plan_again(const Error& reason, std::int64_t now_ns) {
+// No answer to the open request is needed any more: the next one says so.
+void Navigator::drop_open() {
+  if (open_) dropped_id_ = open_->id;
   open_.reset();
+}
+
+void Navigator::plan_again(const Error& reason, std::int64_t now_ns) {
+  drop_open();
   if (attempts_ >= config_.max_attempts) {
-    return give_up(
-        {reason.code, reason.message + " (after " + std::to_string(attempts_) + " attempts)"});
+    return give_up({reason.code, fmt::format("{} (after {} attempts)", reason.message, attempts_)});
   }
   retry_ns_ = now_ns + to_ns(kRetryDelay_s);
 }
 
 void Navigator::give_up(const Error& reason) {
-  open_.reset();
+  drop_open();
   goal_open_ = false;
   enter(State::failed, reason);
 }
@@ -179,7 +217,7 @@ void Navigator::give_up(const Error& reason) {
 void Navigator::tracker_failed(const Error& reason, std::int64_t now_ns) {
   const Goal goal = goal_open_ ? goal_ : flight_->goal;
   flight_.reset();
-  open_.reset();
+  drop_open();
   if (attempts_ >= config_.max_attempts) return give_up(reason);
   goal_ = goal;
   goal_open_ = true;
@@ -190,29 +228,30 @@ void Navigator::tracker_failed(const Error& reason, std::int64_t now_ns) {
 
 void Navigator::check_arrival(std::int64_t now_ns) {
   if (!flight_ || goal_open_ || state_ != State::flying || now_ns < flight_->end_ns) return;
-  const double distance_m = (position_map_ - flight_->goal.position_map).norm();
+  const double distance_m = (vehicle_.position_map - flight_->goal.position_map).norm();
   if (odometry_is_fresh(now_ns) && at_rest() && distance_m < config_.arrival_tolerance_m) {
     attempts_ = 0;
     return enter(State::arrived);
   }
   if (now_ns - flight_->end_ns < to_ns(config_.settle_timeout_s)) return;
   enter(State::failed, fail(ErrorCode::tracking_lost,
-                            "the trajectory has ended, but the vehicle is " +
-                                std::to_string(distance_m) + " m from the goal or not at rest"));
+                            fmt::format("the trajectory has ended, but the vehicle is {:.3g} m "
+                                        "from the goal or not at rest",
+                                        distance_m)));
 }
 
 void Navigator::check_silence(std::int64_t now_ns) {
   if (!open_ || now_ns - open_->asked_ns < to_ns(config_.plan_timeout_s)) return;
-  plan_again(
-      fail(ErrorCode::stage_silent, std::string(next_stage(open_->last_stage)) +
-                                        " did not answer request " + std::to_string(open_->id) +
-                                        " within " + std::to_string(config_.plan_timeout_s) +
-                                        " s: is it running, in this domain and namespace?"),
-      now_ns);
+  plan_again(fail(ErrorCode::stage_silent,
+                  fmt::format(
+                      "{} did not answer request {} within {:.3g} s: is it running, in this domain "
+                      "and namespace?",
+                      next_stage(open_->last_stage), open_->id, config_.plan_timeout_s)),
+             now_ns);
 }
 
 bool Navigator::at_rest() const {
-  return velocity_map_.norm() < config_.rest_speed_m_s;
+  return vehicle_.velocity_map.norm() < config_.rest_speed_m_s;
 }
 
 bool Navigator::odometry_is_fresh(std::int64_t now_ns) const {
@@ -221,7 +260,7 @@ bool Navigator::odometry_is_fresh(std::int64_t now_ns) const {
 
 void Navigator::enter(State state, Error reason) {
   state_ = state;
-  const std::uint64_t id = open_ ? open_->id : flight_ ? flight_->id : 0;
+  const std::uint64_t id = open_ ? open_->id : flight_ ? flight_->committed.id() : 0;
   orders_.push_back(StateOrder{state, id, goal_.position_map, std::move(reason)});
 }
 

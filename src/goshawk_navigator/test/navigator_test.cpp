@@ -18,11 +18,17 @@ Error ok() {
   return {ErrorCode::ok, ""};
 }
 
+RigidBodyState at(const Vec3& position, const Vec3& velocity = Vec3::Zero(), double yaw_rad = 0.0) {
+  return {.position_map = position,
+          .velocity_map = velocity,
+          .q_map_base = Quaternion(Eigen::AngleAxisd(yaw_rad, Vec3::UnitZ()))};
+}
+
 /// Plays the other stages and the vehicle.
 class Harness {
  public:
   explicit Harness(const Config& config = {}) : navigator(config, 100) {
-    navigator.on_odometry(kHome, Vec3::Zero(), now);
+    navigator.on_odometry(at(kHome), now);
   }
 
   void goal(const Vec3& g) {
@@ -32,8 +38,8 @@ class Harness {
 
   void take() {
     for (auto& order : navigator.take_orders()) {
-      if (auto* plan = std::get_if<PlanOrder>(&order)) plans.push_back(*plan);
-      if (auto* commit = std::get_if<CommitOrder>(&order)) commits.push_back(*commit);
+      if (auto* plan = std::get_if<PlanRequest>(&order)) plans.push_back(*plan);
+      if (auto* commit = std::get_if<CommittedTrajectory>(&order)) commits.push_back(*commit);
       if (auto* state = std::get_if<StateOrder>(&order)) states.push_back(*state);
     }
   }
@@ -45,30 +51,35 @@ class Harness {
       now += kStep;
       if (odometry_comes) {
         const FlatState s = vehicle();
-        navigator.on_odometry(s.position + offset, s.velocity, now);
+        navigator.on_odometry(at(s.position + offset, s.velocity, yaw_rad), now);
       }
       navigator.tick(now);
       take();
     }
   }
 
-  Trajectory solve(const PlanOrder& order, double duration_s = 4.0) {
-    Trajectory t;
-    t.pieces.push_back(BezierPiece::between(order.start, order.goal, duration_s));
-    return t;
+  Commitment solve(const PlanRequest& request, double duration_s = 4.0) {
+    Trajectory line{{BezierPiece::between(request.start, request.goal, duration_s)}};
+    const std::vector room{Polytope::box(Vec3::Constant(-99), Vec3::Constant(99))};
+    const Limits wide{.v_max_m_s = 99.0, .a_max_m_s2 = 999.0};
+    return {.id = request.id,
+            .nominal = certify(std::move(line), room, wide, request.start, request.goal).value(),
+            .map_version = 5,
+            .yaw_curve = yaw_curve};
   }
 
   /// All stages answer the newest request.
   void answer(double duration_s = 4.0) {
-    const PlanOrder order = plans.back();
+    const PlanRequest request = plans.back();
     for (const char* stage : {"path_search", "corridor_builder", "trajectory_optimizer"}) {
-      navigator.on_report(order.id, stage, ok(), now);
+      navigator.on_report(request.id, stage, ok(), now);
     }
     const std::size_t before = commits.size();
-    const Trajectory t = solve(order, duration_s);
-    navigator.on_trajectory(order.id, t, now);
+    navigator.on_trajectory(solve(request, duration_s), now);
     take();
-    if (commits.size() > before) flown.push_back({t, commits.back().start_time_ns});
+    if (commits.size() > before) {
+      flown.push_back({commits.back().flown(), commits.back().start_time_ns()});
+    }
   }
 
   FlatState vehicle() const {
@@ -87,8 +98,10 @@ class Harness {
   std::int64_t now = 10 * kSecond;
   bool odometry_comes = true;
   Vec3 offset = Vec3::Zero();
-  std::vector<PlanOrder> plans;
-  std::vector<CommitOrder> commits;
+  double yaw_rad = 0.0;
+  std::optional<YawCurve> yaw_curve;  // of the answers
+  std::vector<PlanRequest> plans;
+  std::vector<CommittedTrajectory> commits;
   std::vector<StateOrder> states;
   std::vector<std::pair<Trajectory, std::int64_t>> flown;
 };
@@ -104,7 +117,7 @@ TEST(Navigator, FliesFromRestToTheGoalAndSaysSo) {
   EXPECT_EQ(h.last().state, State::planning);
   h.answer();
   ASSERT_EQ(h.commits.size(), 1u);
-  EXPECT_EQ(h.commits[0].start_time_ns, h.now + kSecond / 20);
+  EXPECT_EQ(h.commits[0].start_time_ns(), h.now + kSecond / 20);
   EXPECT_EQ(h.last().state, State::flying);
   h.pass(3.9);
   EXPECT_EQ(h.navigator.state(), State::flying);
@@ -130,9 +143,113 @@ TEST(Navigator, ReplansInFlightFromTheStateThatTheTrajectoryWillHave) {
   h.pass(0.1);
   h.answer();
   ASSERT_EQ(h.commits.size(), 2u);
-  EXPECT_NEAR(double(h.commits[1].start_time_ns - start_ns) * 1e-9, switch_s, 1e-6);
+  EXPECT_NEAR(double(h.commits[1].start_time_ns() - start_ns) * 1e-9, switch_s, 1e-6);
   h.pass(5.0);
   EXPECT_EQ(h.navigator.state(), State::arrived);
+}
+
+TEST(Navigator, SaysWhenAndWithWhichHeadingAPlanBegins) {
+  Harness h;
+  h.yaw_rad = 0.75;
+  h.pass(0.1);
+  h.goal(kGoal);
+  EXPECT_FALSE(h.plans[0].start_time_ns.has_value()) << "at rest, whenever";
+  EXPECT_NEAR(h.plans[0].start_yaw_rad, 0.75, 1e-9);
+  EXPECT_EQ(h.plans[0].start_yaw_rate_rad_s, 0.0);
+  h.yaw_curve = YawCurve{4.0, {0.5, 1.0, 1.5}};  // 0.75 rad at 0 s, 0.125 rad/s
+  h.answer();
+  h.pass(1.0);
+  h.goal(Vec3(2, 3, 1));
+  ASSERT_TRUE(h.plans[1].start_time_ns.has_value());
+  EXPECT_EQ(*h.plans[1].start_time_ns, h.now + 3 * kSecond / 10);
+  const double in_flight_s = double(*h.plans[1].start_time_ns - h.flown[0].second) * 1e-9;
+  EXPECT_NEAR(h.plans[1].start_yaw_rad, 0.75 + 0.125 * in_flight_s, 1e-9);
+  EXPECT_NEAR(h.plans[1].start_yaw_rate_rad_s, 0.125, 1e-9);
+}
+
+TEST(Navigator, WithoutACurveOfYawAMovingStartLooksWhereTheVehicleDoes) {
+  Harness h;
+  h.goal(kGoal);
+  h.answer();
+  h.yaw_rad = -1.25;
+  h.pass(1.0);
+  h.goal(Vec3(2, 3, 1));
+  ASSERT_TRUE(h.plans[1].start_time_ns.has_value());
+  EXPECT_NEAR(h.plans[1].start_yaw_rad, -1.25, 1e-9);
+  EXPECT_EQ(h.plans[1].start_yaw_rate_rad_s, 0.0);
+}
+
+TEST(Navigator, AtRestMeasuresHowFastTheVehicleTurns) {
+  Harness h;
+  RigidBodyState turning = at(kHome, Vec3::Zero(), 0.3);
+  turning.angular_velocity_base = Vec3(0, 0, 0.4);
+  h.navigator.on_odometry(turning, h.now);
+  h.goal(kGoal);
+  EXPECT_NEAR(h.plans[0].start_yaw_rate_rad_s, 0.4, 1e-12);
+}
+
+TEST(Navigator, ANewGoalOrATimeoutSupersedesTheOpenRequestAndAnAnswerDoesNot) {
+  Harness h;
+  h.goal(kGoal);
+  EXPECT_EQ(h.plans[0].supersedes, 0u);
+  h.goal(Vec3(2, 3, 1));
+  EXPECT_EQ(h.plans[1].supersedes, h.plans[0].id) << "a new goal";
+  h.pass(1.3);
+  ASSERT_EQ(h.plans.size(), 3u);
+  EXPECT_EQ(h.plans[2].supersedes, h.plans[1].id) << "nobody answered";
+  h.navigator.on_report(h.plans[2].id, "path_search", {ErrorCode::no_map, "no map"}, h.now);
+  h.pass(0.3);
+  ASSERT_EQ(h.plans.size(), 4u);
+  EXPECT_EQ(h.plans[3].supersedes, 0u) << "the search said why not";
+  h.answer();
+  h.goal(kHome);
+  EXPECT_EQ(h.plans[4].supersedes, 0u) << "the one before is flown";
+}
+
+TEST(Navigator, AsksForTheLimitsAndTheUnknownSpaceOfItsConfig) {
+  Config config;
+  config.v_max_m_s = 3.0;
+  config.limit_norm = LimitNorm::horizontal_vertical;
+  config.j_max_m_s3 = 20.0;
+  config.v_max_vertical_m_s = 1.0;
+  config.a_max_vertical_m_s2 = 1.5;
+  config.unknown = UnknownSpace::blocked;
+  Harness h(config);
+  h.goal(kGoal);
+  const Limits& limits = h.plans[0].limits;
+  EXPECT_EQ(limits.v_max_m_s, 3.0);
+  EXPECT_EQ(limits.a_max_m_s2, 2.0);
+  EXPECT_EQ(limits.norm, LimitNorm::horizontal_vertical);
+  EXPECT_EQ(limits.j_max_m_s3, 20.0);
+  EXPECT_EQ(limits.v_max_vertical_m_s, 1.0);
+  EXPECT_EQ(limits.a_max_vertical_m_s2, 1.5);
+  EXPECT_EQ(h.plans[0].unknown, UnknownSpace::blocked);
+  EXPECT_TRUE(check(h.plans[0]).ok());
+}
+
+TEST(Navigator, CommitsWithTheGoalsHeadingAndTheMapOfTheProof) {
+  Harness h;
+  ASSERT_TRUE(h.navigator.on_goal(kGoal, 0.5, h.now).ok());
+  h.take();
+  h.answer();
+  ASSERT_EQ(h.commits.size(), 1u);
+  EXPECT_EQ(h.commits[0].id(), h.plans[0].id);
+  EXPECT_EQ(h.commits[0].yaw_rad(), 0.5);
+  EXPECT_EQ(h.commits[0].map_version(), 5u);
+  EXPECT_FALSE(h.commits[0].stop().has_value());
+}
+
+TEST(Navigator, DoesNotCommitATrajectoryThatDoesNotEndAtRest) {
+  Harness h;
+  h.goal(kGoal);
+  PlanRequest through = h.plans[0];
+  through.goal.velocity = Vec3(1, 0, 0);
+  h.navigator.on_trajectory(h.solve(through), h.now);
+  h.take();
+  EXPECT_TRUE(h.commits.empty());
+  EXPECT_EQ(h.last().state, State::failed);
+  EXPECT_EQ(h.last().reason.code, ErrorCode::not_certified);
+  EXPECT_THAT(h.last().reason.message, HasSubstr("does not end at rest"));
 }
 
 TEST(Navigator, DropsAPlanThatCameTooLateAndAsksWithMoreLead) {
@@ -193,15 +310,14 @@ TEST(Navigator, FliesWhenARestartedStageAnswersALaterAttempt) {
   h.goal(kGoal);
   h.pass(2.5);
   ASSERT_GE(h.plans.size(), 2u);
-  const PlanOrder stale = h.plans[0];
-  h.navigator.on_trajectory(stale.id, h.solve(stale), h.now);
+  h.navigator.on_trajectory(h.solve(h.plans[0]), h.now);
   h.take();
   EXPECT_TRUE(h.commits.empty()) << "an answer to a request that was given up is ignored";
   h.answer();
   EXPECT_EQ(h.navigator.state(), State::flying);
 }
 
-TEST(Navigator, AsksAgainWhereTheMapHasNotComeYetButNotWhereThereIsNoPath) {
+TEST(Navigator, AsksAgainIfTheMapHasNotComeYetButNotIfThereIsNoPath) {
   Harness h;
   h.goal(kGoal);
   h.navigator.on_report(h.plans.back().id, "path_search", {ErrorCode::no_map, "no map"}, h.now);
@@ -213,11 +329,11 @@ TEST(Navigator, AsksAgainWhereTheMapHasNotComeYetButNotWhereThereIsNoPath) {
   EXPECT_EQ(h.last().reason.code, ErrorCode::no_path);
 }
 
-TEST(Navigator, PlansAgainFromRestWhereTheTrackerRefuses) {
+TEST(Navigator, PlansAgainFromRestIfTheTrackerRefuses) {
   Harness h;
   h.goal(kGoal);
   h.answer();
-  const std::uint64_t refused = h.commits[0].id;
+  const std::uint64_t refused = h.commits[0].id();
   h.flown.clear();  // the vehicle stays where it is
   h.navigator.on_report(refused, "tracker", {ErrorCode::not_at_start, "0.9 m away"}, h.now);
   h.take();
@@ -257,7 +373,7 @@ TEST(Navigator, WaitsForOdometryThatComesALittleAfterTheGoal) {
 
 TEST(Navigator, DoesNotPlanFromRestWhileTheVehicleMovesByItself) {
   Harness h;
-  h.navigator.on_odometry(kHome, Vec3(1, 0, 0), h.now);
+  h.navigator.on_odometry(at(kHome, Vec3(1, 0, 0)), h.now);
   h.goal(kGoal);
   EXPECT_TRUE(h.plans.empty());
   h.pass(0.1);  // the harness' vehicle is at rest
@@ -297,7 +413,7 @@ TEST(Navigator, SameEventsSameOrders) {
     std::vector<double> numbers;
     for (const auto& p : h.plans)
       numbers.insert(numbers.end(), p.start.position.begin(), p.start.position.end());
-    for (const auto& c : h.commits) numbers.push_back(double(c.start_time_ns));
+    for (const auto& c : h.commits) numbers.push_back(double(c.start_time_ns()));
     for (const auto& s : h.states) numbers.push_back(double(s.state));
     return numbers;
   };

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include "goshawk/path_search/config.hpp"
 #include "goshawk/path_search/path_search.hpp"
 #include "goshawk/runtime/component.hpp"
@@ -24,14 +26,14 @@ class PathSearchComponent : public Component {
       : node_(node),
         config_(node.parameters<Config>([this](const Config& c) { return reconfigure(c); })),
         search_(make_search(config_)),
-        reporter_(node, config_.planner),
+        reporter_(node, std::string(search_.planner_name())),
         publisher_(node.advertise<msg::Path>("path", Qos::reliable_last())),
         map_(node, reporter_, [this](const auto& grid) { search_.set_map(grid); }) {
     node.subscribe<msg::PlanRequest>(
         "plan_request", Qos::reliable_last(),
         [this](const msg::PlanRequest& m, const MessageInfo& info) { on_request(m, info); });
-    reporter_.ready("searches with " + std::string(search_.planner_name()) + ", " +
-                    config_.corner_rule);
+    reporter_.ready(
+        fmt::format("searches with {}, {}", search_.planner_name(), to_word(config_.corner_rule)));
   }
 
  private:
@@ -59,7 +61,7 @@ class PathSearchComponent : public Component {
   }
 
   /// What is left of the request's deadline.
-  StopSignal stop_of(const conversions::PlanRequest& request) const {
+  StopSignal stop_of(const PlanRequest& request) const {
     if (request.deadline_s == 0.0) return {};
     return StopSignal::after(request.deadline_s - double(node_.now_ns() - request.stamp_ns) * 1e-9);
   }

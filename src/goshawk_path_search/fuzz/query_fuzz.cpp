@@ -41,20 +41,17 @@ class Bytes {
 };
 
 Config read_config(Bytes& in) {
-  static const char* kPlanners[] = {"jastar", "astar", "astar_euclidean", "astar_manhattan",
-                                    "dijkstra"};
-  static const char* kUnknown[] = {"as_mapped", "blocked", "free", "costly"};
   static const char* kBoxes[] = {"", "0,0,0,1,1,1", "-1,-1,-1,9,9,9", "1,2", "nan,0,0,1,1,1"};
   Config c;
   const std::uint8_t flags = in.byte();
-  c.planner = kPlanners[in.byte() % 5];
-  c.corner_rule = (flags & 1U) != 0 ? "squeeze" : "no_squeeze";
-  c.pruning = (flags & 2U) != 0 ? "greedy" : "relaxed";
+  c.planner = Planner(in.byte() % 5);
+  c.corner_rule = (flags & 1U) != 0 ? CornerRule::squeeze : CornerRule::no_squeeze;
+  c.pruning = (flags & 2U) != 0 ? Pruning::greedy : Pruning::relaxed;
   c.nearest_reachable = (flags & 4U) != 0;
   if ((flags & 8U) != 0) c.move_within_m = in.number();
   if ((flags & 16U) != 0) c.z_weight = in.number();
   if ((flags & 32U) != 0) c.clearance_m = in.number();
-  if ((flags & 64U) != 0) c.unknown = kUnknown[in.byte() % 4];
+  if ((flags & 64U) != 0) c.unknown = UnknownRule(in.byte() % 4);
   if ((flags & 128U) != 0) c.search_box = kBoxes[in.byte() % 5];
   return c;
 }
@@ -91,7 +88,7 @@ void check_path(const VoxelGrid& map, const Config& config, const PlannedPath& p
   expect(path.waypoints_map.size() >= 2 && path.raw_map.size() >= 2);
   expect(path.pruned_length_m <= path.raw_length_m * (1.0 + 1e-9));
   expect(std::isfinite(path.cost) && path.cost >= 0.0);
-  if (config.corner_rule == "squeeze") return;
+  if (config.corner_rule == CornerRule::squeeze) return;
   for (std::size_t i = 1; i < path.waypoints_map.size(); ++i) {
     expect(line_is_free(map, path.waypoints_map[i - 1], path.waypoints_map[i]));
   }

@@ -373,20 +373,21 @@ void GridSearch<Heuristic, kJumps>::trace(VoxelPath& path) const {
 
 }  // namespace
 
-std::unique_ptr<GridPlanner> make_grid_search(Variant variant, CornerRule rule) {
-  switch (variant) {
-    case Variant::jastar:
+std::unique_ptr<GridPlanner> make_grid_search(Planner planner, CornerRule rule) {
+  switch (planner) {
+    case Planner::jastar:
       return std::make_unique<GridSearch<OctileHeuristic, true>>("jastar", rule);
-    case Variant::astar:
+    case Planner::astar:
       return std::make_unique<GridSearch<OctileHeuristic, false>>("astar", rule);
-    case Variant::astar_euclidean:
+    case Planner::astar_euclidean:
       return std::make_unique<GridSearch<EuclideanHeuristic, false>>("astar_euclidean", rule);
-    case Variant::astar_manhattan:
+    case Planner::astar_manhattan:
       return std::make_unique<GridSearch<ManhattanHeuristic, false>>("astar_manhattan", rule);
-    case Variant::dijkstra:
+    case Planner::dijkstra:
       return std::make_unique<GridSearch<ZeroHeuristic, false>>("dijkstra", rule);
+    default:
+      throw std::invalid_argument("make_grid_search() of a planner that samples");
   }
-  throw std::logic_error("a search variant without an implementation");
 }
 
 }  // namespace goshawk::path_search

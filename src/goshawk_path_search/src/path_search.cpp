@@ -51,13 +51,9 @@ Result<PathSearch> PathSearch::create(const Config& config) {
   if (auto status = check(config); !status) return status.error();
   auto planner = make_planner(config);
   if (!planner) return planner.error();
-  const auto rule = parse_corner_rule(config.corner_rule);
-  if (!rule) return rule.error();
-  const auto pruning = parse_pruning(config.pruning);
-  if (!pruning) return pruning.error();
   const auto box = parse_search_box(config.search_box);
   if (!box) return box.error();
-  return PathSearch(config, std::move(planner).value(), *rule, *pruning, *box);
+  return PathSearch(config, std::move(planner).value(), *box);
 }
 
 Status PathSearch::reconfigure(const Config& config) {
@@ -97,7 +93,8 @@ void PathSearch::set_map(std::shared_ptr<const VoxelGrid> map) {
     planner_resolution_m_ = resolution_m;
   }
   map_ = *std::move(searched);
-  const auto unknown = config_.unknown == "costly" ? unknown_voxels(*map_) : std::nullopt;
+  const auto unknown =
+      config_.unknown == UnknownRule::costly ? unknown_voxels(*map_) : std::nullopt;
   planner_->set_map(map_->occupied, unknown ? &*unknown : nullptr);
 }
 
@@ -126,7 +123,7 @@ Status PathSearch::plan(const PlanQuery& query, PlannedPath& path) {
 
 Status PathSearch::place(const PlanQuery& query) {
   const auto placed = [&](const Vec3& p, Endpoint endpoint) {
-    auto end = place_end(*map_, rule_, p, endpoint, config_.move_within_m);
+    auto end = place_end(*map_, config_.corner_rule, p, endpoint, config_.move_within_m);
     const bool outside =
         end.code() == ErrorCode::start_outside || end.code() == ErrorCode::goal_outside;
     if (!outside || !box_) return end;
@@ -158,7 +155,7 @@ Status PathSearch::search(const PlanQuery& query, PlannedPath& path) {
       .start = start_.end, .goals = goal_ends_, .stop = earlier(query.stop, config_.time_limit_s)};
   Status status = planner_->search(voxels, voxel_path_);
   if (status.code() != ErrorCode::no_path || !config_.nearest_reachable) return status;
-  const auto nearest = nearest_reachable(map_->occupied, rule_, voxels);
+  const auto nearest = nearest_reachable(map_->occupied, config_.corner_rule, voxels);
   if (!nearest) return nearest.error();
   // One goal is left: the nearest one, moved to the voxel found.
   const Vec3 center_map = map_->geometry.center(*nearest);
@@ -212,10 +209,10 @@ void PathSearch::fill(PlannedPath& path) {
   path.raw_map.push_back(goal.at_map);
   nodes_grid_.clear();
   for (const Vec3& p : path.raw_map) nodes_grid_.push_back(geometry.to_grid(p));
-  pruner_.prune(pruning_, map_->occupied, nodes_grid_, kept_);
+  pruner_.prune(config_.pruning, map_->occupied, nodes_grid_, kept_);
   path.waypoints_map.clear();
   for (const int k : kept_) path.waypoints_map.push_back(path.raw_map[std::size_t(k)]);
-  if (pruning_ == Pruning::relaxed) relax(path.waypoints_map);
+  if (config_.pruning == Pruning::relaxed) relax(path.waypoints_map);
   path.raw_length_m = polyline_length(path.raw_map);
   path.pruned_length_m = polyline_length(path.waypoints_map);
   path.cost = voxel_path_.cost_voxels * geometry.resolution_m;

@@ -1,5 +1,7 @@
 #include "goshawk/path_search/planner.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -63,18 +65,11 @@ Error no_way(const GridQuery& query) {
                                       ": choose another goal, or a smaller radius or margin");
 }
 
-Result<CornerRule> parse_corner_rule(std::string_view word) {
-  if (word == "no_squeeze") return CornerRule::no_squeeze;
-  if (word == "squeeze") return CornerRule::squeeze;
-  return fail(ErrorCode::invalid_parameter,
-              "corner_rule is '" + std::string(word) + "': it must be no_squeeze or squeeze");
-}
-
 namespace {
 
 Weights weights_of(const Config& config, double resolution_m) {
   Weights weights{.climb = config.z_weight};
-  if (config.unknown == "costly") weights.unknown = config.unknown_weight;
+  if (config.unknown == UnknownRule::costly) weights.unknown = config.unknown_weight;
   if (config.clearance_m > 0.0) {
     weights.clearance = config.clearance_weight;
     weights.reach_voxels =
@@ -83,43 +78,39 @@ Weights weights_of(const Config& config, double resolution_m) {
   return weights;
 }
 
-Result<std::unique_ptr<GridPlanner>> make_weighted(const Config& config, CornerRule rule,
-                                                   const Weights& weights) {
-  // JA*'s pruning presumes plain costs. Its answer to others is that of A*.
-  if (config.planner == "jastar" || config.planner == "astar") {
-    return make_weighted_search("astar_weighted", true, rule, weights);
+// JA*'s pruning presumes plain costs. Its answer to others is that of A*.
+Result<std::unique_ptr<GridPlanner>> make_weighted(const Config& config, const Weights& weights) {
+  switch (config.planner) {
+    case Planner::jastar:
+    case Planner::astar:
+      return make_weighted_search("astar_weighted", true, config.corner_rule, weights);
+    case Planner::dijkstra:
+      return make_weighted_search("dijkstra_weighted", false, config.corner_rule, weights);
+    default:
+      return fail(ErrorCode::invalid_parameter,
+                  fmt::format("planner {} knows lengths only: with z_weight, clearance_m or "
+                              "unknown: costly use jastar, astar or dijkstra",
+                              to_word(config.planner)));
   }
-  if (config.planner == "dijkstra") {
-    return make_weighted_search("dijkstra_weighted", false, rule, weights);
-  }
-  return fail(ErrorCode::invalid_parameter,
-              "planner " + config.planner +
-                  " knows lengths only: with z_weight, clearance_m or unknown: costly use jastar, "
-                  "astar or dijkstra");
 }
 
 }  // namespace
 
 Result<std::unique_ptr<GridPlanner>> make_planner(const Config& config, double resolution_m) {
   if (auto status = check(config); !status) return status.error();
-  const auto rule = parse_corner_rule(config.corner_rule);
-  if (!rule) return rule.error();
   const Weights weights = weights_of(config, resolution_m);
-  if (!weights.plain()) return make_weighted(config, *rule, weights);
-  const SamplingOptions sampling{
-      .max_iterations = config.max_iterations,
-      .step_voxels = config.step_m / resolution_m,
-      .seed = std::uint64_t(config.seed),
-      .validity = config.validity == "fcl" ? Validity::fcl : Validity::grid};
-  const std::string_view name = config.planner;
-  if (name == "rrt") return make_sampling_search(SamplingMethod::rrt, sampling);
-  if (name == "rrtstar") return make_sampling_search(SamplingMethod::rrtstar, sampling);
-  if (name == "prm") return make_sampling_search(SamplingMethod::prm, sampling);
-  if (name == "astar") return make_grid_search(Variant::astar, *rule);
-  if (name == "astar_euclidean") return make_grid_search(Variant::astar_euclidean, *rule);
-  if (name == "astar_manhattan") return make_grid_search(Variant::astar_manhattan, *rule);
-  if (name == "dijkstra") return make_grid_search(Variant::dijkstra, *rule);
-  return make_grid_search(Variant::jastar, *rule);
+  if (!weights.plain()) return make_weighted(config, weights);
+  switch (config.planner) {
+    case Planner::rrt:
+    case Planner::rrtstar:
+    case Planner::prm:
+      return make_sampling_search(config.planner, {.max_iterations = config.max_iterations,
+                                                   .step_voxels = config.step_m / resolution_m,
+                                                   .seed = std::uint64_t(config.seed),
+                                                   .validity = config.validity});
+    default:
+      return make_grid_search(config.planner, config.corner_rule);
+  }
 }
 
 }  // namespace goshawk::path_search

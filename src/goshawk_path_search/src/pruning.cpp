@@ -19,15 +19,6 @@ constexpr double kGain = 1e-12;  // relative; less is rounding
 
 }  // namespace
 
-Result<Pruning> parse_pruning(std::string_view word) {
-  if (word == "none") return Pruning::none;
-  if (word == "greedy") return Pruning::greedy;
-  if (word == "shortest") return Pruning::shortest;
-  if (word == "relaxed") return Pruning::relaxed;
-  return fail(ErrorCode::invalid_parameter, "pruning is '" + std::string(word) +
-                                                "': it must be shortest, relaxed, greedy or none");
-}
-
 void PathPruner::prune(Pruning pruning, const BitGrid& blocked, std::span<const Vec3> nodes,
                        std::vector<int>& kept) {
   blocked_ = &blocked;

@@ -112,18 +112,14 @@ struct SteadyPrm final : og::PRM {
 
 class SamplingSearch final : public GridPlanner {
  public:
-  SamplingSearch(SamplingMethod method, const SamplingOptions& options)
-      : method_(method), options_(options) {
+  SamplingSearch(Planner planner, const SamplingOptions& options)
+      : planner_(planner), options_(options) {
     ompl::msg::noOutputHandler();
   }
 
   using GridPlanner::search;
   using GridPlanner::set_map;
-  std::string_view name() const override {
-    return method_ == SamplingMethod::rrt       ? "rrt"
-           : method_ == SamplingMethod::rrtstar ? "rrtstar"
-                                                : "prm";
-  }
+  std::string_view name() const override { return to_word(planner_); }
   void set_map(const BitGrid& blocked, const BitGrid*) override;
   Status search(const GridQuery& query, VoxelPath& path) override;
 
@@ -135,7 +131,7 @@ class SamplingSearch final : public GridPlanner {
   Status direct(const GridQuery& query, VoxelPath& path) const;
   void take(og::PathGeometric& found, const GridQuery& query, VoxelPath& path) const;
 
-  SamplingMethod method_;
+  Planner planner_;
   SamplingOptions options_;
   BitGrid blocked_;
   std::unique_ptr<SegmentValidity> validity_;  // of blocked_
@@ -168,8 +164,8 @@ ob::SpaceInformationPtr SamplingSearch::make_space() const {
 
 ob::PlannerPtr SamplingSearch::make_planner(const ob::SpaceInformationPtr& space) const {
   const auto seed = std::uint32_t(options_.seed % 0xFFFFFFFFU) + 1;  // OMPL: 0 is no seed
-  if (method_ == SamplingMethod::prm) return std::make_shared<SteadyPrm>(space);
-  if (method_ == SamplingMethod::rrt) {
+  if (planner_ == Planner::prm) return std::make_shared<SteadyPrm>(space);
+  if (planner_ == Planner::rrt) {
     auto rrt = std::make_shared<SeededRrt>(space, seed);
     rrt->setRange(options_.step_voxels);
     return rrt;
@@ -264,9 +260,11 @@ void SamplingSearch::take(og::PathGeometric& found, const GridQuery& query, Voxe
 
 }  // namespace
 
-std::unique_ptr<GridPlanner> make_sampling_search(SamplingMethod method,
-                                                  const SamplingOptions& options) {
-  return std::make_unique<SamplingSearch>(method, options);
+std::unique_ptr<GridPlanner> make_sampling_search(Planner planner, const SamplingOptions& options) {
+  if (planner != Planner::rrt && planner != Planner::rrtstar && planner != Planner::prm) {
+    throw std::invalid_argument("make_sampling_search() of a planner that does not sample");
+  }
+  return std::make_unique<SamplingSearch>(planner, options);
 }
 
 }  // namespace goshawk::path_search

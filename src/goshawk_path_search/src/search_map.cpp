@@ -110,14 +110,15 @@ std::optional<BitGrid> unknown_voxels(const VoxelGrid& map) {
 Result<std::shared_ptr<const VoxelGrid>> make_search_map(std::shared_ptr<const VoxelGrid> map,
                                                          const Config& config,
                                                          const std::optional<SearchBox>& box) {
-  const bool wants_unknown = config.unknown == "free" || config.unknown == "costly";
+  const bool wants_unknown =
+      config.unknown == UnknownRule::free || config.unknown == UnknownRule::costly;
   if (wants_unknown && map->unknown_is_occupied && !map->known.empty()) {
     return fail(ErrorCode::invalid_parameter,
-                "unknown is " + config.unknown +
+                "unknown is " + std::string(to_word(config.unknown)) +
                     ", but the map counts unknown space as occupied: set map_server's unknown to "
                     "free, or path_search's to as_mapped");
   }
-  const bool blocks = config.unknown == "blocked" && !map->unknown_is_occupied;
+  const bool blocks = config.unknown == UnknownRule::blocked && !map->unknown_is_occupied;
   if (!box && !blocks) return map;
   VoxelGrid own;
   if (box) {

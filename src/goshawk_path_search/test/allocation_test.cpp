@@ -29,9 +29,9 @@ namespace goshawk::path_search {
 namespace {
 
 TEST(PathSearch, AllocatesNothingInARepeatedQuery) {
-  for (const std::string planner :
-       {"jastar", "astar", "astar_euclidean", "astar_manhattan", "dijkstra"}) {
-    for (const std::string pruning : {"shortest", "greedy", "none"}) {
+  for (const Planner planner : {Planner::jastar, Planner::astar, Planner::astar_euclidean,
+                                Planner::astar_manhattan, Planner::dijkstra}) {
+    for (const Pruning pruning : {Pruning::shortest, Pruning::greedy, Pruning::none}) {
       Config config;
       config.planner = planner;
       config.pruning = pruning;
@@ -48,7 +48,7 @@ TEST(PathSearch, AllocatesNothingInARepeatedQuery) {
       const double length = path.pruned_length_m;
       const long before = allocations;
       ASSERT_TRUE(search.plan(start, goal, path).ok());
-      EXPECT_EQ(allocations, before) << planner << ", " << pruning;
+      EXPECT_EQ(allocations, before) << to_word(planner) << ", " << to_word(pruning);
       EXPECT_EQ(path.pruned_length_m, length);
     }
   }

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "goshawk/path_search/grid_search.hpp"
+#include "goshawk/path_search/sampling_search.hpp"
 #include "reference.hpp"
 
 namespace goshawk::path_search {
@@ -13,8 +15,8 @@ using reference::Random;
 
 std::unique_ptr<GridPlanner> planner_of(const std::string& name, const std::string& rule) {
   Config config;
-  config.planner = name;
-  config.corner_rule = rule;
+  config.planner = from_word<Planner>(name).value();
+  config.corner_rule = from_word<CornerRule>(rule).value();
   return std::move(make_planner(config)).value();
 }
 
@@ -149,11 +151,10 @@ TEST(Planners, AreChosenByName) {
     EXPECT_EQ(planner_of(name, "squeeze")->name(), name);
   }
   Config config;
-  config.planner = "best";
+  config.planner = Planner(100);
   EXPECT_EQ(make_planner(config).code(), ErrorCode::invalid_parameter);
-  config = {};
-  config.corner_rule = "sometimes";
-  EXPECT_EQ(make_planner(config).code(), ErrorCode::invalid_parameter);
+  EXPECT_THROW(make_grid_search(Planner::prm, CornerRule::squeeze), std::invalid_argument);
+  EXPECT_THROW(make_sampling_search(Planner::jastar, {}), std::invalid_argument);
 }
 
 TEST(Planners, FollowAMapThatChangesLikeANewOne) {

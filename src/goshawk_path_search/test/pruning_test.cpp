@@ -45,7 +45,7 @@ double shortest_length(const BitGrid& map, const std::vector<Vec3>& nodes) {
 }
 
 // A path of the planner, with ends anywhere inside their voxels.
-std::vector<Vec3> random_path(const BitGrid& map, const std::string& rule, Random& random) {
+std::vector<Vec3> random_path(const BitGrid& map, CornerRule rule, Random& random) {
   Config config;
   config.corner_rule = rule;
   const auto planner = std::move(make_planner(config)).value();
@@ -77,7 +77,7 @@ void expect_valid(const BitGrid& map, const std::vector<Vec3>& nodes, const std:
 }
 
 TEST(Pruning, StaysFreeKeepsTheEndsAndIsNeverLonger) {
-  for (const std::string rule : {"no_squeeze", "squeeze"}) {
+  for (const CornerRule rule : {CornerRule::no_squeeze, CornerRule::squeeze}) {
     Random random(10);
     PathPruner pruner;
     for (int n = 0; n < 1500; ++n) {
@@ -87,7 +87,7 @@ TEST(Pruning, StaysFreeKeepsTheEndsAndIsNeverLonger) {
       for (const Pruning pruning : {Pruning::none, Pruning::greedy, Pruning::shortest}) {
         std::vector<int> kept;
         pruner.prune(pruning, map, nodes, kept);
-        expect_valid(map, nodes, kept, rule == "squeeze");
+        expect_valid(map, nodes, kept, rule == CornerRule::squeeze);
         if (HasFatalFailure()) FAIL() << "map " << n;
       }
     }
@@ -100,7 +100,7 @@ TEST(Pruning, FindsTheShortestPolylineOverThePathsNodes) {
   int bent = 0;
   for (int n = 0; n < 400; ++n) {
     const BitGrid map = reference::box_map({30, 30, 8}, random.uniform(0.1, 0.4), random);
-    const auto nodes = random_path(map, "no_squeeze", random);
+    const auto nodes = random_path(map, CornerRule::no_squeeze, random);
     if (nodes.size() < 3) continue;
     std::vector<int> kept, greedy;
     pruner.prune(Pruning::shortest, map, nodes, kept);
@@ -143,7 +143,7 @@ double length(const std::vector<Vec3>& points) {
 
 // Free, the same ends, never longer; only a move of the raw path (squeeze) may be what it was.
 TEST(Relaxing, ShortensAndStaysFree) {
-  for (const std::string rule : {"no_squeeze", "squeeze"}) {
+  for (const CornerRule rule : {CornerRule::no_squeeze, CornerRule::squeeze}) {
     Random random(12);
     PathPruner pruner;
     int shorter = 0;
@@ -168,11 +168,11 @@ TEST(Relaxing, ShortensAndStaysFree) {
       for (std::size_t i = 1; i < after.size(); ++i) {
         if (line_is_free(map, after[i - 1], after[i])) continue;
         const auto from = std::ranges::find(nodes, after[i - 1]);
-        ASSERT_TRUE(rule == "squeeze" && from != nodes.end() && *(from + 1) == after[i])
+        ASSERT_TRUE(rule == CornerRule::squeeze && from != nodes.end() && *(from + 1) == after[i])
             << "map " << n << ", leg " << i;
       }
     }
-    EXPECT_GT(shorter, 100) << rule;
+    EXPECT_GT(shorter, 100) << to_word(rule);
   }
 }
 
@@ -191,7 +191,7 @@ TEST(Relaxing, TouchesTheCornerOfAWall) {
 TEST(Relaxing, InTheStageIsNoLongerThanShortestAndFreeInMetres) {
   Random random(13);
   Config shortest, relaxed;
-  relaxed.pruning = "relaxed";
+  relaxed.pruning = Pruning::relaxed;
   auto one = std::move(PathSearch::create(shortest)).value();
   auto other = std::move(PathSearch::create(relaxed)).value();
   for (int n = 0; n < 150; ++n) {
@@ -242,7 +242,6 @@ TEST(Pruning, AcceptsPathsWithoutAnythingToPrune) {
   std::vector<Vec3> none, two = {{0.5, 0.5, 0.5}, {1.5, 1.5, 1.5}};
   EXPECT_EQ(pull_tight(map, none), 0);
   EXPECT_EQ(pull_tight(map, two), 0);
-  EXPECT_EQ(parse_pruning("some").code(), ErrorCode::invalid_parameter);
 }
 
 }  // namespace

@@ -19,8 +19,8 @@ constexpr double kResolution = 0.2;
 
 std::unique_ptr<GridPlanner> planner_of(const std::string& name, bool squeeze) {
   Config config;
-  config.planner = name;
-  config.corner_rule = squeeze ? "squeeze" : "no_squeeze";
+  config.planner = from_word<Planner>(name).value();
+  config.corner_rule = squeeze ? CornerRule::squeeze : CornerRule::no_squeeze;
   return std::move(make_planner(config)).value();
 }
 
@@ -178,7 +178,7 @@ TEST(WeightedSearch, StandsInForJaStarAndAStarAndIsRefusedByTheOthers) {
                                                         {"rrt", ""},
                                                         {"prm", ""}}) {
     Config config;
-    config.planner = name;
+    config.planner = from_word<Planner>(name).value();
     config.z_weight = 0.5;
     const auto planner = make_planner(config, kResolution);
     if (expected.empty()) {
@@ -197,7 +197,7 @@ TEST(StopSignal, EndsEverySearchByDeadlineOrCancellation) {
   const std::vector<End> goals = {End::center_of(reference::free_voxel(map, random))};
   for (const std::string name : {"astar_euclidean", "dijkstra", "weighted", "rrtstar", "prm"}) {
     Config config;
-    config.planner = name == "weighted" ? "dijkstra" : name;
+    config.planner = name == "weighted" ? Planner::dijkstra : from_word<Planner>(name).value();
     config.z_weight = name == "weighted" ? 1.0 : 0.0;
     const auto planner = std::move(make_planner(config)).value();
     planner->set_map(map);
@@ -208,7 +208,7 @@ TEST(StopSignal, EndsEverySearchByDeadlineOrCancellation) {
     query.stop = {.deadline = {}, .token = source.get_token()};
     source.request_stop();
     EXPECT_EQ(planner->search(query, path).code(), ErrorCode::cancelled) << name;
-    if (config.planner != "dijkstra") continue;
+    if (config.planner != Planner::dijkstra) continue;
     query.stop = StopSignal::after(1e300);
     EXPECT_TRUE(planner->search(query, path).ok()) << name;
   }

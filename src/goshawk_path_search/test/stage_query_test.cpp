@@ -113,7 +113,7 @@ TEST(CutOffGoals, AreApproachedOnRequest) {
   EXPECT_EQ(stage({}, grid).plan(start, goal).code(), ErrorCode::no_path);
   Config config;
   config.nearest_reachable = true;
-  for (const auto* planner : {"jastar", "dijkstra", "rrtstar"}) {
+  for (const Planner planner : {Planner::jastar, Planner::dijkstra, Planner::rrtstar}) {
     config.planner = planner;
     config.max_iterations = 300;
     const auto path = stage(config, grid).plan(start, goal);
@@ -163,20 +163,20 @@ TEST(UnknownSpace, IsFreeBlockedOrCostly) {
   for (int x = 3; x < 9; ++x) grid->known.set({x, 1, 0}, false);
   grid->unknown_is_occupied = false;
   const Vec3 start = grid->geometry.center({0, 1, 0}), goal = grid->geometry.center({11, 1, 0});
-  const auto cost = [&](const std::string& unknown) {
+  const auto cost = [&](UnknownRule unknown) {
     Config config;
     config.unknown = unknown;
     config.unknown_weight = 0.1;
     const auto path = stage(config, grid).plan(start, goal);
     return path.ok() ? path->cost / 0.2 : -1.0;
   };
-  EXPECT_NEAR(cost("as_mapped"), 11.0, 1e-12);
-  EXPECT_NEAR(cost("free"), 11.0, 1e-12);
-  EXPECT_NEAR(cost("costly"), 11.0 + 0.6, 1e-12) << "cheaper through it than round it";
-  EXPECT_NEAR(cost("blocked"), 9.0 + 2.0 * std::sqrt(2.0), 1e-12);
+  EXPECT_NEAR(cost(UnknownRule::as_mapped), 11.0, 1e-12);
+  EXPECT_NEAR(cost(UnknownRule::free), 11.0, 1e-12);
+  EXPECT_NEAR(cost(UnknownRule::costly), 11.0 + 0.6, 1e-12) << "cheaper through it than round it";
+  EXPECT_NEAR(cost(UnknownRule::blocked), 9.0 + 2.0 * std::sqrt(2.0), 1e-12);
   grid->unknown_is_occupied = true;
   Config config;
-  config.unknown = "costly";
+  config.unknown = UnknownRule::costly;
   EXPECT_EQ(stage(config, grid).plan(start, goal).code(), ErrorCode::invalid_parameter);
 }
 
@@ -186,7 +186,7 @@ TEST(Weights, BendThePathAsTheyShould) {
   for (int z = 0; z < 9; ++z) blocked.set({10, 10, z}, true);
   const auto grid = grid_of(blocked);
   Config config;
-  config.pruning = "none";
+  config.pruning = Pruning::none;
   config.clearance_m = 0.6;
   config.clearance_weight = 5.0;
   const auto path =
@@ -229,10 +229,10 @@ TEST(Config, RefusesEveryWrongNumberAtOnce) {
 TEST(SamplingPlanners, FindFreePathsThatRepeatBitForBit) {
   Random random(32);
   const auto grid = grid_of(reference::box_map({40, 40, 12}, 0.15, random));
-  for (const std::string planner : {"rrt", "rrtstar", "prm"}) {
+  for (const Planner planner : {Planner::rrt, Planner::rrtstar, Planner::prm}) {
     Config config;
     config.planner = planner;
-    config.pruning = "none";
+    config.pruning = Pruning::none;
     config.max_iterations = 1500;
     PathSearch search = stage(config, grid), again = stage(config, grid);
     int found = 0;
@@ -244,15 +244,17 @@ TEST(SamplingPlanners, FindFreePathsThatRepeatBitForBit) {
       ASSERT_EQ(path.code(), repeated.code());
       if (!path.ok()) continue;
       ++found;
-      EXPECT_EQ(path->raw_map, repeated->raw_map) << planner;
-      EXPECT_EQ(path->raw_map, search.plan(start, goal)->raw_map) << planner << ", same object";
+      EXPECT_EQ(path->raw_map, repeated->raw_map) << to_word(planner);
+      EXPECT_EQ(path->raw_map, search.plan(start, goal)->raw_map)
+          << to_word(planner) << ", same object";
       EXPECT_EQ(path->raw_map.front(), start);
       EXPECT_EQ(path->raw_map.back(), goal);
       for (std::size_t i = 1; i < path->raw_map.size(); ++i) {
-        ASSERT_TRUE(line_is_free(*grid, path->raw_map[i - 1], path->raw_map[i])) << planner;
+        ASSERT_TRUE(line_is_free(*grid, path->raw_map[i - 1], path->raw_map[i]))
+            << to_word(planner);
       }
     }
-    EXPECT_GT(found, 3) << planner;
+    EXPECT_GT(found, 3) << to_word(planner);
   }
 }
 
@@ -297,11 +299,11 @@ TEST(FclValidity, AgreesWithTheGridButForAHair) {
 TEST(FclValidity, GivesSamplingPlannersPathsThatAreFreeOnTheGrid) {
   Random random(34);
   const auto grid = grid_of(reference::box_map({30, 30, 10}, 0.15, random));
-  for (const std::string planner : {"rrt", "rrtstar", "prm"}) {
+  for (const Planner planner : {Planner::rrt, Planner::rrtstar, Planner::prm}) {
     Config config;
     config.planner = planner;
-    config.validity = "fcl";
-    config.pruning = "none";
+    config.validity = Validity::fcl;
+    config.pruning = Pruning::none;
     config.max_iterations = 400;
     PathSearch search = stage(config, grid), again = stage(config, grid);
     int found = 0;
@@ -311,16 +313,14 @@ TEST(FclValidity, GivesSamplingPlannersPathsThatAreFreeOnTheGrid) {
       const auto path = search.plan(start, goal);
       if (!path.ok()) continue;
       ++found;
-      EXPECT_EQ(path->raw_map, again.plan(start, goal)->raw_map) << planner;
+      EXPECT_EQ(path->raw_map, again.plan(start, goal)->raw_map) << to_word(planner);
       for (std::size_t i = 1; i < path->raw_map.size(); ++i) {
-        ASSERT_TRUE(line_is_free(*grid, path->raw_map[i - 1], path->raw_map[i])) << planner;
+        ASSERT_TRUE(line_is_free(*grid, path->raw_map[i - 1], path->raw_map[i]))
+            << to_word(planner);
       }
     }
-    EXPECT_GT(found, 1) << planner;
+    EXPECT_GT(found, 1) << to_word(planner);
   }
-  Config config;
-  config.validity = "guess";
-  EXPECT_EQ(PathSearch::create(config).code(), ErrorCode::invalid_parameter);
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ bool load(const std::string& path, BitGrid& map) {
   return true;
 }
 
-void match_published_lengths(const std::string& name, int every, const std::string& planner_name) {
+void match_published_lengths(const std::string& name, int every, Planner choice) {
   BitGrid map;
   const std::string path = folder() + name;
   if (!load(path, map)) {
@@ -41,7 +41,7 @@ void match_published_lengths(const std::string& name, int every, const std::stri
   std::ifstream problems(path + ".3dscen");
   ASSERT_TRUE(problems) << "the map is there, its problems are not";
   Config config;
-  config.planner = planner_name;
+  config.planner = choice;
   const auto planner = std::move(make_planner(config)).value();
   planner->set_map(map);
   std::string line;
@@ -61,13 +61,13 @@ void match_published_lengths(const std::string& name, int every, const std::stri
 }
 
 TEST(Warframe, JaStarMatchesEveryPublishedLengthOfSimple) {
-  match_published_lengths("Simple.3dmap", 1, "jastar");
+  match_published_lengths("Simple.3dmap", 1, Planner::jastar);
 }
 TEST(Warframe, JaStarMatchesEveryPublishedLengthOfComplex) {
-  match_published_lengths("Complex.3dmap", 1, "jastar");
+  match_published_lengths("Complex.3dmap", 1, Planner::jastar);
 }
 TEST(Warframe, AStarMatchesThePublishedLengthsOfComplex) {
-  match_published_lengths("Complex.3dmap", 10, "astar");
+  match_published_lengths("Complex.3dmap", 10, Planner::astar);
 }
 
 }  // namespace

@@ -161,13 +161,17 @@ std::string parse(const ParameterSource::Entry& entry, std::string& value) {
 
 std::string range_fault(double value, const Range& range) {
   if (range.contains(value) && std::isfinite(value)) return "";
-  return "is out of range: it must be " + to_text(range);
+  return "is out of range: it must be " + range_text(range);
 }
 
 std::string range_fault(const std::string& value, const OneOf& one_of) {
   if (std::ranges::find(one_of.choices, value) != one_of.choices.end()) return "";
-  const std::string near = nearest_name(value, one_of.choices);
-  return "is not a choice: it must be " + to_text(one_of) +
+  return not_a_choice(value, one_of.choices);
+}
+
+std::string not_a_choice(const std::string& word, const std::vector<std::string>& choices) {
+  const std::string near = nearest_name(word, choices);
+  return "is not a choice: it must be " + range_text(OneOf{choices}) +
          (near.empty() ? "" : "; did you mean " + near + "?");
 }
 
@@ -186,7 +190,7 @@ std::string to_text(const std::string& value) {
   return value;
 }
 
-std::string to_text(const Range& range) {
+std::string range_text(const Range& range) {
   const bool upper = range.hi < 1e300;
   if (range.lo == -std::numeric_limits<double>::infinity()) {
     return upper ? "at most " + to_text(range.hi) : "finite";
@@ -196,7 +200,7 @@ std::string to_text(const Range& range) {
   return text;
 }
 
-std::string to_text(const OneOf& one_of) {
+std::string range_text(const OneOf& one_of) {
   std::string text;
   for (const auto& choice : one_of.choices) text += (text.empty() ? "" : ", ") + choice;
   return "one of " + text;

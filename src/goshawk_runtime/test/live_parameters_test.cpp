@@ -8,6 +8,7 @@ namespace goshawk::runtime {
 namespace {
 
 using runtime_test::Config;
+using runtime_test::Planner;
 using testing::AllOf;
 using testing::HasSubstr;
 
@@ -105,7 +106,7 @@ TEST(CheckChange, NamesWhatHoldsFromStartToEnd) {
   to.speed_m_s = 3.0;
   EXPECT_TRUE(check_change(Config{}, to));
   to.radius_m = 1.0;
-  to.planner = "astar";
+  to.planner = Planner::astar;
   EXPECT_THAT(check_change(Config{}, to).error().message, HasSubstr("radius_m, planner cannot"));
 }
 

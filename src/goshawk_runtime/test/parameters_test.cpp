@@ -13,6 +13,7 @@ namespace goshawk::runtime {
 namespace {
 
 using runtime_test::Config;
+using runtime_test::Planner;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
@@ -54,7 +55,7 @@ TEST(Parameters, DefaultsStandWhereNothingIsSet) {
   const auto config = read("");
   ASSERT_TRUE(config);
   EXPECT_EQ(config->radius_m, 0.3);
-  EXPECT_EQ(config->planner, "jastar");
+  EXPECT_EQ(config->planner, Planner::jastar);
 }
 
 TEST(Parameters, ReadsEveryType) {
@@ -66,7 +67,7 @@ TEST(Parameters, ReadsEveryType) {
   EXPECT_EQ(config->speed_m_s, 2.5);
   EXPECT_EQ(config->count, 7);
   EXPECT_FALSE(config->enabled);
-  EXPECT_EQ(config->planner, "astar");
+  EXPECT_EQ(config->planner, Planner::astar);
   EXPECT_EQ(config->label, "12");
 }
 

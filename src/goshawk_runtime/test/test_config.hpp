@@ -7,13 +7,19 @@
 
 namespace goshawk::runtime_test {
 
+enum class Planner { jastar, astar };
+
+constexpr auto words_of(Planner) {
+  return std::to_array<Named<Planner>>({{Planner::jastar, "jastar"}, {Planner::astar, "astar"}});
+}
+
 /// One parameter of each kind and each rule; every other one can change at run time.
 struct Config {
   double radius_m = 0.3;
   double speed_m_s = 2.0;
   int count = 5;
   bool enabled = true;
-  std::string planner = "jastar";
+  Planner planner = Planner::jastar;
   std::string label = "";
 };
 
@@ -24,7 +30,7 @@ void describe(Self& c, Visitor&& visit) {
   visit("speed_m_s", c.speed_m_s, "m/s", "largest speed", AtRunTime{Range::positive()});
   visit("count", c.count, "", "how many", Range{1, 100});
   visit("enabled", c.enabled, "", "whether at all", AtRunTime{Anything{}});
-  visit("planner", c.planner, "", "which search", OneOf{{"jastar", "astar"}});
+  visit("planner", c.planner, "", "which search", Anything{});
   visit("label", c.label, "", "free text", AtRunTime{Anything{}});
 }
 

@@ -9,7 +9,7 @@ using plant::VehicleParameters;
 
 namespace {
 
-using Vec4 = Eigen::Vector4d;
+using Vec4 = Vec4;
 
 // Signs for front left, rear left, rear right, front right. Thrust at +y rolls to the right hand's
 // positive x; thrust at +x pitches the nose up, about -y.

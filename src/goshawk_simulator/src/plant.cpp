@@ -10,7 +10,7 @@ using plant::VehicleParameters;
 
 namespace {
 
-using Vec4 = Eigen::Vector4d;
+using Vec4 = Vec4;
 using Packed = Eigen::Matrix<double, 17, 1>;
 
 // Layout: position, velocity, quaternion (x, y, z, w), angular velocity, rotor speeds.

@@ -16,11 +16,6 @@ constexpr double kThrustShare = 0.9;         // of the maximum; the rest is for 
 
 }  // namespace
 
-double yaw_of(const Eigen::Quaterniond& q_map_base) {
-  const Vec3 x_base = q_map_base * Vec3::UnitX();
-  return std::atan2(x_base.y(), x_base.x());
-}
-
 PositionHold::PositionHold(const VehicleParameters& parameters, double max_tilt_rad)
     : mass_kg_(parameters.mass_kg),
       max_thrust_n_(std::max(parameters.weight_n(), kThrustShare * parameters.max_thrust_n())),

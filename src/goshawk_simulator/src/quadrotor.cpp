@@ -105,7 +105,7 @@ Status Quadrotor::command(const ThrustAttitude& command) {
   return success();
 }
 
-Eigen::Vector4d Quadrotor::rotor_thrust_n() const {
+Vec4 Quadrotor::rotor_thrust_n() const {
   return config_.vehicle.thrust_coefficient_n_s2 * plant_->state().rotor_speed_rad_s.cwiseAbs2();
 }
 
@@ -121,8 +121,8 @@ Status Quadrotor::advance(double dt_s) {
 
 void Quadrotor::step() {
   const auto wrench = attitude_control(config_.attitude, inertia_kg_m2_, state(), onboard_target());
-  const Eigen::Vector4d thrust_n = mixer_.allocate(wrench);
-  const Eigen::Vector4d rotor_command =
+  const Vec4 thrust_n = mixer_.allocate(wrench);
+  const Vec4 rotor_command =
       (thrust_n / config_.vehicle.thrust_coefficient_n_s2).cwiseMax(0.0).cwiseSqrt();
   const Vec3 velocity_map = state().velocity_map;
   plant_->step(rotor_command, wind_.velocity_map(), kStep_s);

@@ -10,7 +10,7 @@ using plant::VehicleParameters;
 
 namespace {
 
-using Vec4 = Eigen::Vector4d;
+using Vec4 = Vec4;
 
 Wrench random_wrench(Random& random, double thrust, double tilt, double yaw) {
   return {random.uniform(0.0, thrust),

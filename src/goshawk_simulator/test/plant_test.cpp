@@ -11,7 +11,7 @@ using plant::VehicleParameters;
 
 namespace {
 
-using Vec4 = Eigen::Vector4d;
+using Vec4 = Vec4;
 
 VehicleParameters without_drag() {
   VehicleParameters p;

@@ -242,7 +242,7 @@ TEST(Quadrotor, AFailsafeInWindIsNotBlownAway) {
   for (const double wind : {-3.0, 3.0}) {
     Config config;
     config.wind_y_m_s = wind;
-    config.landing = "never";
+    config.landing = LandingRule::never;
     auto quadrotor = make(config);
     advance(quadrotor, 10.0);
     const ThrustAttitude balance{.thrust_n = quadrotor.rotor_thrust_n().sum(),
@@ -260,7 +260,7 @@ TEST(Quadrotor, AFailsafeInWindIsNotBlownAway) {
 TEST(Quadrotor, WithoutCommandsItHoldsThenLandsStraightDown) {
   Config config;
   config.failsafe_hold_s = 3.0;
-  config.landing = "anywhere";
+  config.landing = LandingRule::anywhere;
   auto quadrotor = make(config);
   ASSERT_TRUE(quadrotor.reset({1, 2, 1.5}, 0.0));
   advance(quadrotor, 20.0);

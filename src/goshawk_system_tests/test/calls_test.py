@@ -30,8 +30,8 @@ class GoodPlan(CallsCase):
                          {"duration_s", "length_m", "mean_speed_m_s", "max_speed_m_s",
                           "max_acceleration_m_s2", "pieces"})
         self.assertEqual(set(plan["certificate"]),
-                         {"position_m", "velocity_m_s", "acceleration_m_s2", "joint_position_m",
-                          "joint_velocity_m_s", "joint_acceleration_m_s2", "start_m", "goal_m",
+                         {"position_m", "validity_s", "velocity_m_s", "acceleration_m_s2", "continuity_position_m",
+                          "continuity_velocity_m_s", "continuity_acceleration_m_s2", "start_m", "goal_m",
                           "jerk_m_s3", "start_excess_m_s", "start_excess_m_s2",
                           "start_excess_s"})
         for family, value in plan["certificate"].items():
@@ -127,6 +127,26 @@ class BadNumbers(CallsCase):
                 self.expect(["plan", f"{option}={value}"], WRONG_CALL, "invalid_parameter", option,
                             value)
                 self.expect(["fly", f"{option}={value}", *fly], WRONG_CALL, "invalid_parameter")
+
+    def test_limits_of_jerk_and_of_the_vertical(self):
+        options = {"--j-max": ("j_max_m_s3", 8.0), "--v-max-vertical": ("v_max_vertical_m_s", 0.5),
+                   "--a-max-vertical": ("a_max_vertical_m_s2", 0.75)}
+        for option in options:
+            self.expect(["plan", f"{option}=-1"], NOT_DONE, "invalid_limits")
+            self.expect(["plan", f"{option}=x"], WRONG_CALL, "invalid_parameter", option)
+        self.expect(["plan", "--norm=manhattan"], WRONG_CALL, "invalid_parameter", "per_axis")
+        call = ["plan", "--json", "--norm", "horizontal_vertical"]
+        for option, (_, value) in options.items():
+            call += [option, str(value)]
+        plan = self.json_object(self.sandbox.goshawk(*call))
+        self.assertTrue(plan["ok"], plan["message"])
+        for key, value in options.values():
+            self.assertEqual(plan["request"]["limits"][key], value)
+        climb = max(abs(b[2] - a[2]) * 5 / piece["duration_s"]
+                    for piece in plan["trajectory"]["pieces"]
+                    for a, b in zip(piece["control_points"], piece["control_points"][1:]))
+        self.assertLessEqual(climb, 0.5 + 1e-6)
+        self.assertGreater(climb, 0.25)
 
     def test_limits_at_the_edge_of_numbers(self):
         """Whatever comes of it: an answer, in time."""

@@ -164,7 +164,7 @@ class BadMessages(StackTest):
             with self.subTest(f"{name}, to the tracker"):
                 self.expect_report("committed_trajectory",
                                    "goshawk_msgs/msg/CommittedTrajectory",
-                                   {"header": {"frame_id": "map"}, "trajectory": message},
+                                   {"header": {"frame_id": "map"}, "nominal": message},
                                    "tracker", code)
 
     def test_6_odometry_and_commands(self):

@@ -29,11 +29,6 @@ ThrustAttitude thrust_attitude_of(const Vec3& specific_force_map,
       mass_kg * force, Eigen::Quaterniond(R_map_base).normalized(), {omega_x, omega_y, omega_z}};
 }
 
-double yaw_of(const Eigen::Quaterniond& q_map_base) {
-  const Vec3 x_base = q_map_base * Vec3::UnitX();
-  return std::atan2(x_base.y(), x_base.x());
-}
-
 double wrapped(double angle_rad) {
   return std::remainder(angle_rad, 2.0 * std::numbers::pi);
 }

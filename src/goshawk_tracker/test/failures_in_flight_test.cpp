@@ -18,7 +18,7 @@ CommittedTrajectory ten_metres() {
 // The vehicle's own landing is the simulator's matter.
 simulator::Config anywhere() {
   simulator::Config config;
-  config.landing = "anywhere";
+  config.landing = LandingRule::anywhere;
   return config;
 }
 
@@ -242,7 +242,7 @@ TEST(FailuresInFlight, OverAnObstacleItHoldsAndSaysWhyUntilAMapShowsTheWayDownFr
 }
 
 TEST(FailuresInFlight, TheRuleOfLandingIsAsConfigured) {
-  for (const std::string rule : {"anywhere", "never"}) {
+  for (const LandingRule rule : {LandingRule::anywhere, LandingRule::never}) {
     Config config;
     config.landing = rule;
     Flight flight(config);
@@ -251,9 +251,11 @@ TEST(FailuresInFlight, TheRuleOfLandingIsAsConfigured) {
     loop.run_until(40 * kSecond);
     EXPECT_FALSE(loop.tracker.needs_map());
     const auto status = loop.tracker.status();
-    EXPECT_EQ(status.mode, rule == "never" ? Mode::hold : Mode::land);
-    EXPECT_EQ(status.fault.code, rule == "never" ? ErrorCode::cancelled : ErrorCode::stage_silent);
-    EXPECT_NEAR(loop.vehicle.state().position_map.z(), rule == "never" ? 1.0 : 0.1, 0.02);
+    EXPECT_EQ(status.mode, rule == LandingRule::never ? Mode::hold : Mode::land);
+    EXPECT_EQ(status.fault.code,
+              rule == LandingRule::never ? ErrorCode::cancelled : ErrorCode::stage_silent);
+    EXPECT_NEAR(loop.vehicle.state().position_map.z(), rule == LandingRule::never ? 1.0 : 0.1,
+                0.02);
   }
 }
 

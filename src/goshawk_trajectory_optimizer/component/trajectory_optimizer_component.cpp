@@ -47,9 +47,8 @@ class TrajectoryOptimizerComponent : public Component {
     auto [solution, compute_ns] = timed([&]() -> Result<Solution> {
       const auto corridor = conversions::from_msg(m);
       if (!corridor) return corridor.error();
-      const Query query{.duration_s = request->duration_s, .out_of_time = [&] {
-                          return !conversions::check_deadline(*request, node_.now_ns());
-                        }};
+      const Query query{.duration_s = request->duration_s,
+                        .out_of_time = [&] { return !check_deadline(*request, node_.now_ns()); }};
       return optimizer_.optimise(*corridor, request->start, request->goal, request->limits, query);
     });
     timing.compute_ns = compute_ns;
@@ -64,8 +63,8 @@ class TrajectoryOptimizerComponent : public Component {
                         {"start_excess_s", solution->certificate.start_excess_s}});
   }
 
-  void publish(const msg::Corridor& corridor, const conversions::PlanRequest& request,
-               const Solution& solution, std::int64_t compute_ns) {
+  void publish(const msg::Corridor& corridor, const PlanRequest& request, const Solution& solution,
+               std::int64_t compute_ns) {
     msg::BezierTrajectory m;
     m.request(corridor.request());
     m.implementation(std::string(optimizer_.implementation()));
@@ -83,7 +82,7 @@ class TrajectoryOptimizerComponent : public Component {
 
   // A vehicle that flies looks where it was told to; one at rest where its last flight ended. The
   // tracker, which knows better, catches up.
-  Status add_yaw(const conversions::PlanRequest& request, const Trajectory& trajectory,
+  Status add_yaw(const PlanRequest& request, const Trajectory& trajectory,
                  msg::BezierTrajectory& m) {
     if (config_.yaw == "none") return success();
     YawRequest yaw{.mode = config_.yaw == "fixed"          ? YawMode::fixed

@@ -70,21 +70,21 @@ class VisualizerComponent : public Component {
   }
 
   void on_trajectory(const msg::CommittedTrajectory& m) {
-    const auto received = conversions::from_msg(m.trajectory());
-    if (!received) return reporter_.fault(received.error());
+    const auto committed = conversions::from_msg(m);
+    if (!committed) return reporter_.fault(committed.error());
     const std::int64_t now_ns = node_.now_ns();
     MarkerArray array;
-    if (path_.request().id() == received->request.id) {
+    if (path_.request().id() == committed->id()) {
       array.markers().push_back(line_marker("path as searched", conversions::from_msg(path_.raw()),
                                             0.02, {0.79, 0.64, 1.0}, now_ns));
       array.markers().push_back(line_marker("pruned path", conversions::from_msg(path_.waypoints()),
                                             0.025, {0.95, 0.89, 0.30}, now_ns));
     }
-    for (auto& marker : corridor_markers(received->polytopes, now_ns)) {
+    for (auto& marker : corridor_markers(committed->flown_polytopes(), now_ns)) {
       array.markers().push_back(std::move(marker));
     }
     array.markers().push_back(
-        trajectory_marker(received->trajectory, received->request.limits.v_max_m_s, now_ns));
+        trajectory_marker(committed->flown(), committed->nominal().limits().v_max_m_s, now_ns));
     reporter_.send(plan_, array);
   }
 

@@ -170,3 +170,31 @@ Goshawk.Trajectory = class {
     return {position: points[0], velocity, acceleration};
   }
 };
+
+// The first t seconds of a piece, as a piece of its own.
+Goshawk.headOf = (piece, t) => {
+  let points = piece.points;
+  const left = [points[0]];
+  while (points.length > 1) {
+    points = points.slice(1).map((q, i) => V3.mix(points[i], q, t / piece.duration));
+    left.push(points[0]);
+  }
+  return {duration: t, points: left};
+};
+
+// What is flown of a CommittedTrajectory when nothing newer comes: the nominal part up to
+// stop_after, then the stop part, which begins there; without a stop part all of the nominal part.
+Goshawk.flown = commit => {
+  const read = pieces => pieces.map(
+      p => ({duration: p.duration, points: p.control_points.map(c => [c.x, c.y, c.z])}));
+  const nominal = read(commit.nominal.pieces);
+  if (!(commit.stop_after > 0)) return new Goshawk.Trajectory(nominal);
+  const pieces = [];
+  let rest = commit.stop_after;
+  for (const piece of nominal) {
+    if (rest < 1e-9) break;
+    pieces.push(rest < piece.duration ? Goshawk.headOf(piece, rest) : piece);
+    rest -= piece.duration;
+  }
+  return new Goshawk.Trajectory([...pieces, ...read(commit.stop_pieces)]);
+};

@@ -111,13 +111,12 @@ Goshawk.LivePage = class extends Goshawk.Page {
   }
 
   onTrajectory(m) {
-    const t = m.trajectory;
+    const t = m.nominal;
     const path = this.paths.get(t.request.id);
-    const pieces = t.pieces.map(p => ({duration: p.duration, points: p.control_points.map(xyz)}));
     this.leg = {
       raw: path ? path.raw.map(xyz) : [], waypoints: path ? path.waypoints.map(xyz) : [],
-      corridor: t.polytopes.map(p => ({A: p.normals, b: p.offsets})),
-      trajectory: new Goshawk.Trajectory(pieces), start: seconds(m.start_time)};
+      corridor: [...t.polytopes, ...m.stop_polytopes].map(p => ({A: p.normals, b: p.offsets})),
+      trajectory: Goshawk.flown(m), start: seconds(m.start_time)};
     const {v_max, a_max} = t.request.limits;
     this.plots[0].limit = v_max;
     this.plots[1].limit = a_max;

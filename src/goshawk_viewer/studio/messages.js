@@ -108,16 +108,16 @@ function corridorParts(polytopes) {
 }
 
 function committed(m) {
-  const t = m.trajectory, v_max = t.request.limits.v_max;
-  const trajectory = new Goshawk.Trajectory(
-      t.pieces.map(p => ({duration: p.duration, points: p.control_points.map(xyz)})));
+  const v_max = m.nominal.request.limits.v_max;
+  const polytopes = [...m.nominal.polytopes, ...m.stop_polytopes];
+  const trajectory = Goshawk.flown(m);
   const steps = Math.max(2, Math.ceil(trajectory.duration / 0.04)), points = [], colors = [];
   for (let k = 0; k <= steps; ++k) {
     const s = trajectory.sample(trajectory.duration * k / steps);
     points.push(s.position);
     colors.push(rgba(Goshawk.speedColor(V3.norm(s.velocity) / v_max)));
   }
-  return scene([entity('corridor', m.header.stamp, corridorParts(t.polytopes)),
+  return scene([entity('corridor', m.header.stamp, corridorParts(polytopes)),
                 entity('trajectory', m.header.stamp, {lines: [line(points, 0.06, rgba([1, 1, 1]), {colors})]})]);
 }
 

@@ -108,13 +108,9 @@ Status RecordedFlight::take_odometry(const Bytes& bytes) {
 Status RecordedFlight::take_commitment(const Bytes& bytes) {
   const auto m = decoded<msg::CommittedTrajectory>(bytes);
   if (!m) return m.error();
-  auto received = conversions::from_msg(m->trajectory());
-  if (!received) return received.error();
-  Committed committed{
-      received->request.id, conversions::to_ns(m->start_time()), received->request.limits, {}};
-  committed.leg.trajectory = std::move(received->trajectory);
-  committed.leg.corridor = std::move(received->polytopes);
-  committed_.push_back(std::move(committed));
+  auto committed = conversions::from_msg(*m);
+  if (!committed) return committed.error();
+  committed_.push_back(*std::move(committed));
   return success();
 }
 
@@ -164,16 +160,15 @@ flight_report::Flight RecordedFlight::flight(const std::string& title) const {
   flight.obstacles = obstacles_ ? &*obstacles_ : nullptr;
   flight.grown = grown_ ? &*grown_ : nullptr;
   std::int64_t origin_ns = 0;
-  if (!committed_.empty()) origin_ns = committed_.front().start_ns;
+  if (!committed_.empty()) origin_ns = committed_.front().start_time_ns();
   if (!flown_.empty()) origin_ns = flown_.front().stamp_ns;
   for (const auto& committed : committed_) {
-    auto leg = committed.leg;
-    if (const auto path = paths_.find(committed.request_id); path != paths_.end()) {
+    auto leg = flight_report::Leg::of(committed, origin_ns);
+    if (const auto path = paths_.find(committed.id()); path != paths_.end()) {
       leg.raw_path_map = path->second.raw_path_map;
       leg.waypoints_map = path->second.waypoints_map;
     }
-    leg.start_t_s = seconds(committed.start_ns - origin_ns);
-    flight.limits = committed.limits;
+    flight.limits = committed.nominal().limits();
     flight.legs.push_back(std::move(leg));
   }
   for (const auto& [stamp_ns, sample] : flown_) {

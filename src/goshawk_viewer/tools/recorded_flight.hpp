@@ -26,12 +26,6 @@ class RecordedFlight {
  private:
   using Bytes = std::vector<unsigned char>;
   using Take = Status (RecordedFlight::*)(const Bytes&);
-  struct Committed {
-    std::uint64_t request_id = 0;
-    std::int64_t start_ns = 0;
-    Limits limits;
-    flight_report::Leg leg;
-  };
   struct State {
     std::int64_t stamp_ns = 0;
     flight_report::FlownSample sample;
@@ -49,7 +43,7 @@ class RecordedFlight {
   std::optional<VoxelGrid> obstacles_;
   std::optional<VoxelGrid> grown_;
   std::map<std::uint64_t, flight_report::Leg> paths_;  // by their requests
-  std::vector<Committed> committed_;
+  std::vector<CommittedTrajectory> committed_;
   std::vector<State> flown_;
   std::vector<std::string> complaints_;
 };

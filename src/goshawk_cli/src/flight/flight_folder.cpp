@@ -13,16 +13,13 @@ double seconds(std::int64_t ns, std::int64_t origin_ns) {
   return double(ns - origin_ns) * 1e-9;
 }
 
-flight_report::Leg make_leg(const CommittedRecord& committed, const FlightRecorder& record,
+flight_report::Leg make_leg(const CommittedTrajectory& committed, const FlightRecorder& record,
                             std::int64_t origin_ns) {
-  flight_report::Leg leg;
-  if (const auto r = record.requests().find(committed.request_id); r != record.requests().end()) {
+  auto leg = flight_report::Leg::of(committed, origin_ns);
+  if (const auto r = record.requests().find(committed.id()); r != record.requests().end()) {
     leg.raw_path_map = conversions::from_msg(r->second.path.raw());
     leg.waypoints_map = conversions::from_msg(r->second.path.waypoints());
   }
-  leg.corridor = committed.polytopes;
-  leg.trajectory = committed.trajectory;
-  leg.start_t_s = seconds(committed.start_ns, origin_ns);
   return leg;
 }
 
@@ -54,7 +51,7 @@ Status write_flight(const std::string& folder, const Json& summary, const Flight
   const std::int64_t origin_ns = record.flown().front().stamp_ns;
   for (const auto& committed : record.committed()) {
     flight.legs.push_back(make_leg(committed, record, origin_ns));
-    flight.limits = committed.limits;
+    flight.limits = committed.nominal().limits();
   }
   for (const auto& [stamp_ns, state] : record.flown()) {
     flight.flown.push_back(

@@ -71,11 +71,8 @@ void FlightRecorder::on_odometry(const nav_msgs::msg::Odometry& m) {
 }
 
 void FlightRecorder::on_commit(const msg::CommittedTrajectory& m) {
-  auto received = conversions::from_msg(m.trajectory());
-  if (!received) return;  // the tracker refuses it as well, and says so
-  committed_.push_back({received->request.id, conversions::to_ns(m.start_time()),
-                        received->request.limits, std::move(received->trajectory),
-                        std::move(received->polytopes)});
+  auto committed = conversions::from_msg(m);
+  if (committed) committed_.push_back(*std::move(committed));  // else the tracker says why not
 }
 
 void FlightRecorder::send_goal(const Vec3& goal_map) {

@@ -30,15 +30,6 @@ struct RequestRecord {
   std::map<std::string, goshawk_msgs::msg::StageReport> reports;  // newest of each stage
 };
 
-/// A trajectory as it was committed.
-struct CommittedRecord {
-  std::uint64_t request_id = 0;
-  std::int64_t start_ns = 0;
-  Limits limits;
-  Trajectory trajectory;
-  std::vector<Polytope> polytopes;
-};
-
 /// Listens to a whole flight, sends goals, and keeps what came.
 class FlightRecorder {
  public:
@@ -53,7 +44,7 @@ class FlightRecorder {
   const goshawk_msgs::msg::NavigatorState& navigator() const { return navigator_; }
   const std::vector<FlownState>& flown() const { return flown_; }
   const std::vector<TrackedError>& errors() const { return errors_; }
-  const std::vector<CommittedRecord>& committed() const { return committed_; }
+  const std::vector<CommittedTrajectory>& committed() const { return committed_; }
   const std::map<std::uint64_t, RequestRecord>& requests() const { return requests_; }
   std::int64_t now_ns() const { return node_.now_ns(); }
   int goal_readers() const { return goals_.matched(); }
@@ -69,7 +60,7 @@ class FlightRecorder {
   std::vector<FlownState> flown_;
   bool knows_truth_ = false;
   std::vector<TrackedError> errors_;
-  std::vector<CommittedRecord> committed_;
+  std::vector<CommittedTrajectory> committed_;
   std::map<std::uint64_t, RequestRecord> requests_;
 };
 

@@ -46,9 +46,9 @@ Json corridor_json(const RequestRecord& record) {
           {"min_overlap_radius_m", to_json(record.corridor.min_overlap_radius())}};
 }
 
-Json trajectory_json(const CommittedRecord* committed) {
+Json trajectory_json(const CommittedTrajectory* committed) {
   if (committed == nullptr) return nullptr;
-  const auto& t = committed->trajectory;
+  const auto& t = committed->flown();
   const auto peaks = t.peaks();
   return {{"duration_s", t.duration_s()},
           {"length_m", t.length_m()},
@@ -74,8 +74,8 @@ Json tracking_json(const FlightRecorder& record, std::uint64_t request_id) {
           {"samples", count}};
 }
 
-const CommittedRecord* committed_of(const FlightRecorder& record, std::uint64_t id) {
-  const auto found = std::ranges::find(record.committed(), id, &CommittedRecord::request_id);
+const CommittedTrajectory* committed_of(const FlightRecorder& record, std::uint64_t id) {
+  const auto found = std::ranges::find(record.committed(), id, &CommittedTrajectory::id);
   return found == record.committed().end() ? nullptr : &*found;
 }
 

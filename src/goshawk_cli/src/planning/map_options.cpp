@@ -1,5 +1,7 @@
 #include "planning/map_options.hpp"
 
+#include <fmt/ranges.h>
+
 #include <charconv>
 
 #include "goshawk/map_server/octree.hpp"
@@ -13,8 +15,7 @@ Status read_number(const std::string& text, const char* option, double& value) {
   const char* end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data(), end, value);
   if (error == std::errc{} && stop == end) return success();
-  return fail(ErrorCode::invalid_parameter,
-              std::string(option) + " '" + text + "' is not a number");
+  return fail(ErrorCode::invalid_parameter, fmt::format("{} '{}' is not a number", option, text));
 }
 
 }  // namespace
@@ -24,6 +25,14 @@ void MapOptions::add_to(CLI::App& app) {
   app.add_option("--unknown", unknown, "space never measured: occupied (default), blocked, free");
   app.add_option("--v-max", v_max, "[m/s] speed limit (default 2)");
   app.add_option("--a-max", a_max, "[m/s^2] acceleration limit (default 2)");
+  app.add_option("--norm", norm,
+                 "what the limits bound: euclidean (default), per_axis or horizontal_vertical");
+  app.add_option("--v-max-vertical", v_max_vertical,
+                 "[m/s] vertical speed limit, with --norm horizontal_vertical (default --v-max)");
+  app.add_option(
+      "--a-max-vertical", a_max_vertical,
+      "[m/s^2] vertical acceleration limit, with --norm horizontal_vertical (default --a-max)");
+  app.add_option("--j-max", j_max, "[m/s^3] limit of the jerk (default: none)");
   app.add_option("--radius", radius, "[m] radius of the vehicle (default 0.15)");
   app.add_option("--margin", margin, "[m] kept for the tracking error (default 0.05)");
   app.add_option("--resolution", resolution, "[m] voxel edge for clouds and .3dmap (default 0.2)");
@@ -48,6 +57,20 @@ Result<Limits> MapOptions::limits(const Limits& defaults) const {
   Limits limits = defaults;
   if (auto s = read_number(v_max, "--v-max", limits.v_max_m_s); !s) return s.error();
   if (auto s = read_number(a_max, "--a-max", limits.a_max_m_s2); !s) return s.error();
+  if (auto s = read_number(j_max, "--j-max", limits.j_max_m_s3); !s) return s.error();
+  if (auto s = read_number(v_max_vertical, "--v-max-vertical", limits.v_max_vertical_m_s); !s) {
+    return s.error();
+  }
+  if (auto s = read_number(a_max_vertical, "--a-max-vertical", limits.a_max_vertical_m_s2); !s) {
+    return s.error();
+  }
+  if (norm.empty()) return limits;
+  const auto known = from_word<LimitNorm>(norm);
+  if (!known) {
+    return fail(ErrorCode::invalid_parameter,
+                fmt::format("--norm '{}': use {}", norm, fmt::join(all_words<LimitNorm>(), ", ")));
+  }
+  limits.norm = *known;
   return limits;
 }
 

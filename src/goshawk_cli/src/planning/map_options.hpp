@@ -5,12 +5,14 @@
 
 namespace goshawk::cli {
 
-/// The options that `plan` and `fly` share: which map, what vehicle, what limits. What is not
-/// given comes from --params-file, then from the defaults.
+/// The options that `plan` and `fly` share: which map, what vehicle, what limits. What the call
+/// lacks comes from --params-file, then from the defaults.
 struct MapOptions {
   std::string map;
   std::string unknown;
-  std::string v_max, a_max, radius, margin, resolution;  // as written; empty: not given
+  // As written; empty: not given.
+  std::string v_max, a_max, norm, j_max, v_max_vertical, a_max_vertical;
+  std::string radius, margin, resolution;
   std::vector<std::string> params_files;
 
   void add_to(CLI::App& app);
@@ -18,7 +20,8 @@ struct MapOptions {
   /// The same as `--ros-args`, so that one code reads and checks both.
   runtime::RosArgs ros_args(const std::string& map_file) const;
 
-  /// @return invalid_parameter for what is no number; zero or negative limits are for Limits::check
+  /// @return invalid_parameter for what is not a number or not a norm; zero and negative limits are
+  /// for Limits::check
   Result<Limits> limits(const Limits& defaults) const;
 };
 

@@ -31,11 +31,11 @@ Json path_json(const path_search::PlannedPath& path) {
 Json polytope_json(const Polytope& p) {
   Json A = Json::array();
   Json b = Json::array();
-  for (int i = 0; i < p.faces(); ++i) {
-    A.push_back(to_json(p.half_spaces[std::size_t(i)].normal));
-    b.push_back(p.half_spaces[std::size_t(i)].offset_m);
+  for (const HalfSpace& face : p.half_spaces) {
+    A.push_back(to_json(face.normal));
+    b.push_back(face.offset_m);
   }
-  return {{"A", A}, {"b", b}};
+  return {{"A", A}, {"b", b}, {"valid_from_s", p.valid_from_s}, {"valid_until_s", p.valid_until_s}};
 }
 
 Json corridor_json(const Corridor& corridor) {
@@ -88,11 +88,12 @@ Json request_json(const Plan& plan) {
 
 Json certificate_to_json(const Certificate& c) {
   return {{"position_m", to_json(c.position_m)},
+          {"validity_s", to_json(c.validity_s)},
           {"velocity_m_s", to_json(c.velocity_m_s)},
           {"acceleration_m_s2", to_json(c.acceleration_m_s2)},
-          {"joint_position_m", to_json(c.continuity_position_m)},
-          {"joint_velocity_m_s", to_json(c.continuity_velocity_m_s)},
-          {"joint_acceleration_m_s2", to_json(c.continuity_acceleration_m_s2)},
+          {"continuity_position_m", to_json(c.continuity_position_m)},
+          {"continuity_velocity_m_s", to_json(c.continuity_velocity_m_s)},
+          {"continuity_acceleration_m_s2", to_json(c.continuity_acceleration_m_s2)},
           {"start_m", to_json(c.start_m)},
           {"goal_m", to_json(c.goal_m)},
           {"jerk_m_s3", to_json(c.jerk_m_s3)},

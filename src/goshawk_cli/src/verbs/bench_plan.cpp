@@ -4,10 +4,10 @@
 #include <map>
 #include <optional>
 
+#include "flight/launch_process.hpp"
 #include "folders.hpp"
 #include "goshawk/conversions/plan.hpp"
 #include "goshawk/runtime/node.hpp"
-#include "flight/launch_process.hpp"
 #include "planning/map_options.hpp"
 #include "verbs.hpp"
 
@@ -98,7 +98,7 @@ class PlanTimer {
 
   Node& node_;
   Publisher<msg::PlanRequest> requests_;
-  conversions::PlanRequest request_;
+  PlanRequest request_;
   std::map<std::string, std::string> ready_;
   Sample sample_;
   std::int64_t final_wire_ns_ = 0;

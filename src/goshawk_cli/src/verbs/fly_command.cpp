@@ -8,14 +8,14 @@
 #include <functional>
 
 #include "flight/flight_folder.hpp"
-#include "verbs/fly_options.hpp"
-#include "goshawk/map_server/octree.hpp"
-#include "goshawk/worlds/world.hpp"
 #include "flight/launch_process.hpp"
-#include "planning/plan_json.hpp"
 #include "flight/random_tour.hpp"
 #include "flight/recorder_process.hpp"
+#include "goshawk/map_server/octree.hpp"
+#include "goshawk/worlds/world.hpp"
+#include "planning/plan_json.hpp"
 #include "verbs.hpp"
+#include "verbs/fly_options.hpp"
 
 namespace goshawk::cli {
 
@@ -162,8 +162,14 @@ Arguments launch_arguments(const FlyOptions& o, const Preparation& p) {
     std::snprintf(value, sizeof value, "%.17g", p.tour.start_map[axis]);
     set(std::string("simulator:start_") + "xyz"[axis] + "_m", value);
   }
-  if (!o.map.v_max.empty()) set("navigator:v_max_m_s", o.map.v_max);
-  if (!o.map.a_max.empty()) set("navigator:a_max_m_s2", o.map.a_max);
+  for (const auto& [name, value] : {std::pair{"v_max_m_s", &o.map.v_max},
+                                    {"a_max_m_s2", &o.map.a_max},
+                                    {"limit_norm", &o.map.norm},
+                                    {"j_max_m_s3", &o.map.j_max},
+                                    {"v_max_vertical_m_s", &o.map.v_max_vertical},
+                                    {"a_max_vertical_m_s2", &o.map.a_max_vertical}}) {
+    if (!value->empty()) set(std::string("navigator:") + name, *value);
+  }
   for (const auto& parameter : o.stage_parameters) a.insert(a.end(), {"-p", parameter});
   return a;
 }

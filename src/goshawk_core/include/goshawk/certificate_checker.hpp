@@ -5,7 +5,7 @@
 //
 // What is proven (docs/trajectories.md): a Bezier curve lies in the convex hull of its control
 // points, and so do its derivatives in the hulls of theirs. So it is enough to look at control
-// points: inside their polytope, below the limits, joined, and beginning and ending as asked.
+// points: inside their polytope, below the limits, continuous, and beginning and ending as asked.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -24,6 +24,7 @@ struct Piece {
 /// {p : A p <= b}, A row after row, normals of length 1.
 struct Polytope {
   std::vector<double> normals, offsets;
+  double valid_from = 0.0, valid_until = 0.0;  // [s] after the trajectory's start; both 0: always
 };
 struct State {
   Point position{}, velocity{}, acceleration{};
@@ -36,15 +37,15 @@ struct Limits {
   double j_max = 0.0, v_max_vertical = 0.0, a_max_vertical = 0.0;
 };
 
-/// Largest violations; at most the tolerance where a family holds, infinite where it is nonsense.
+/// Largest violations; a family holds at or below the tolerance; infinite: nonsense.
 struct Verdict {
-  double position = 0.0, velocity = 0.0, acceleration = 0.0, jerk = 0.0;
-  double joint_position = 0.0, joint_velocity = 0.0, joint_acceleration = 0.0;
+  double position = 0.0, velocity = 0.0, acceleration = 0.0, jerk = 0.0, validity = 0.0;
+  double continuity_position = 0.0, continuity_velocity = 0.0, continuity_acceleration = 0.0;
   double start = 0.0, goal = 0.0;
 
   bool holds(double tolerance = 1e-6) const {
-    for (const double v : {position, velocity, acceleration, jerk, joint_position, joint_velocity,
-                           joint_acceleration, start, goal}) {
+    for (const double v : {position, velocity, acceleration, jerk, validity, continuity_position,
+                           continuity_velocity, continuity_acceleration, start, goal}) {
       if (!(v <= tolerance)) return false;
     }
     return true;
@@ -97,6 +98,9 @@ inline double outside(const Polytope& polytope, const Point& p) {
   }
   return worst;
 }
+inline bool always(const Polytope& p) {
+  return p.valid_from == 0.0 && p.valid_until == 0.0;
+}
 inline double apart(const State& a, const State& b) {
   double worst = length(difference(a.position, b.position));
   raise(worst, length(difference(a.velocity, b.velocity)));
@@ -117,6 +121,9 @@ inline Verdict check(const std::vector<Piece>& pieces, const std::vector<Polytop
                      const Limits& limits, const State& start, const State& goal) {
   using namespace detail;
   Verdict v{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL, limits.j_max > 0.0 ? -HUGE_VAL : 0.0};
+  for (const Polytope& p : polytopes) {
+    if (!always(p)) v.validity = -HUGE_VAL;
+  }
   if (pieces.empty() || !sound(limits)) v.position = v.velocity = v.acceleration = HUGE_VAL;
   // A start above a limit: how far above, and until when, the first pieces may be.
   double v_factor = 1.0, a_factor = 1.0, until = 0.0;
@@ -139,7 +146,12 @@ inline Verdict check(const std::vector<Piece>& pieces, const std::vector<Polytop
     const std::vector<Point> points(piece.control_points.begin(), piece.control_points.end());
     const auto velocity = derivative(points, piece.duration);
     const auto acceleration = derivative(velocity, piece.duration);
-    for (const Point& p : points) raise(v.position, outside(polytopes[piece.polytope], p));
+    const Polytope& home = polytopes[piece.polytope];
+    for (const Point& p : points) raise(v.position, outside(home, p));
+    if (!always(home)) {
+      raise(v.validity, home.valid_from - begin);
+      raise(v.validity, begin + piece.duration - home.valid_until);
+    }
     const bool early = begin < until;
     raise(v.velocity,
           limits.v_max * (largest_use(velocity, limits.norm, limits.v_max, limits.v_max_vertical) -
@@ -157,9 +169,9 @@ inline Verdict check(const std::vector<Piece>& pieces, const std::vector<Polytop
     if (k == 0) {
       v.start = apart(first, start);
     } else {
-      raise(v.joint_position, length(difference(first.position, before.position)));
-      raise(v.joint_velocity, length(difference(first.velocity, before.velocity)));
-      raise(v.joint_acceleration, length(difference(first.acceleration, before.acceleration)));
+      raise(v.continuity_position, length(difference(first.position, before.position)));
+      raise(v.continuity_velocity, length(difference(first.velocity, before.velocity)));
+      raise(v.continuity_acceleration, length(difference(first.acceleration, before.acceleration)));
     }
     before = {points.back(), velocity.back(), acceleration.back()};
     begin += piece.duration;
@@ -182,7 +194,9 @@ Verdict check_message(const Message& m) {
     pieces.push_back(piece);
   }
   std::vector<Polytope> polytopes;
-  for (const auto& p : m.polytopes()) polytopes.push_back({p.normals(), p.offsets()});
+  for (const auto& p : m.polytopes()) {
+    polytopes.push_back({p.normals(), p.offsets(), p.valid_from(), p.valid_until()});
+  }
   const auto& l = m.request().limits();
   const Limits limits{l.v_max(), l.a_max(),          int(l.norm()),
                       l.j_max(), l.v_max_vertical(), l.a_max_vertical()};

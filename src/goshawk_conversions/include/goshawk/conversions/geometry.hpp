@@ -10,7 +10,7 @@
 #include "goshawk_msgs.h"
 
 /// Messages to core types and back. from_msg takes what anyone may have sent: it returns a Result
-/// wherever a message can be wrong; to_msg takes our own values and cannot fail.
+/// if a message can be wrong; to_msg takes our own values and cannot fail.
 namespace goshawk::conversions {
 
 inline constexpr std::string_view kMapFrame = "map";
@@ -34,15 +34,14 @@ std::vector<geometry_msgs::msg::Point> to_points(const std::vector<Vec3>& points
 FlatState from_msg(const goshawk_msgs::msg::FlatState& m);
 goshawk_msgs::msg::FlatState to_msg(const FlatState& s);
 
-/// @return invalid_input where sizes disagree or something is not finite
+/// @return invalid_input if sizes disagree; the numbers are not checked (Polytope::check())
 Result<Polytope> from_msg(const goshawk_msgs::msg::Polytope& m);
 goshawk_msgs::msg::Polytope to_msg(const Polytope& p);
 Result<std::vector<Polytope>> from_msg(const std::vector<goshawk_msgs::msg::Polytope>& m);
 std::vector<goshawk_msgs::msg::Polytope> to_msg(const std::vector<Polytope>& polytopes);
 
-/// @param polytopes how many the corridor has: a piece that names another is invalid_input
-Result<Trajectory> from_msg(const std::vector<goshawk_msgs::msg::BezierPiece>& m,
-                            std::size_t polytopes);
+/// The numbers are not checked: certify() does.
+Trajectory from_msg(const std::vector<goshawk_msgs::msg::BezierPiece>& m);
 std::vector<goshawk_msgs::msg::BezierPiece> to_msg(const Trajectory& t);
 
 goshawk_msgs::msg::Certificate to_msg(const Certificate& c);

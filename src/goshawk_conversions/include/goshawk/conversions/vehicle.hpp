@@ -7,7 +7,7 @@
 namespace goshawk::conversions {
 
 /// Pose in map, twist in base_link, as ROS has it (REP 147).
-/// @return wrong_frame, or invalid_input where something is not finite or the quaternion is far
+/// @return wrong_frame, or invalid_input if something is not finite or the quaternion is far
 /// from length 1
 Result<RigidBodyState> from_msg(const nav_msgs::msg::Odometry& m);
 void fill_msg(const RigidBodyState& state, nav_msgs::msg::Odometry& m);
@@ -15,10 +15,8 @@ void fill_msg(const RigidBodyState& state, nav_msgs::msg::Odometry& m);
 Result<ThrustAttitude> from_msg(const goshawk_msgs::msg::ThrustAttitude& m);
 void fill_msg(const ThrustAttitude& command, goshawk_msgs::msg::ThrustAttitude& m);
 
-geometry_msgs::msg::Quaternion to_msg(const Eigen::Quaterniond& q);
-
-/// Heading of the body's x axis. @return [rad] map, from x to y
-double yaw_of(const Eigen::Quaterniond& q_map_base);
-Eigen::Quaterniond yaw_rotation(double yaw_rad);
+/// @return invalid_input if it is far from length 1
+Result<Quaternion> from_msg(const geometry_msgs::msg::Quaternion& m);
+geometry_msgs::msg::Quaternion to_msg(const Quaternion& q);
 
 }  // namespace goshawk::conversions

@@ -42,11 +42,12 @@ class CommittedTrajectory {
   const std::optional<YawCurve>& yaw_curve() const { return content_.yaw_curve; }
 
   /// What is flown when nothing newer comes: the nominal part up to where the stop part begins,
-  /// then the stop part. A piece's polytope counts through the nominal part's polytopes, then
-  /// through the stop part's.
+  /// then the stop part. A piece's polytope is one of flown_polytopes().
   const Trajectory& flown() const {
     return content_.stop ? to_rest_ : content_.nominal.trajectory();
   }
+  /// The nominal part's, then the stop part's.
+  std::vector<Polytope> flown_polytopes() const;
 
   /// Heading. @param t_s since the start, clamped to the curve; @return [rad], unwrapped
   double yaw_at(double t_s) const {

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <memory>
-#include <string>
 
 #include "goshawk/core/grid_geometry.hpp"
+#include "goshawk/core/words.hpp"
 
 namespace goshawk {
 
@@ -21,28 +21,39 @@ namespace goshawk {
 ///         does not reach from there to the ground; invalid_input: not finite
 Status check_way_down(const VoxelGrid& grid, const Vec3& from_map, double land_height_m);
 
+/// When a vehicle that lost its pilot may land.
+enum class LandingRule {
+  map,       // where the newest map shows the way down free
+  anywhere,  // everywhere: the ground is known to be free, no map is asked
+  never,
+};
+
+constexpr auto words_of(LandingRule) {
+  using enum LandingRule;
+  return std::to_array<Named<LandingRule>>(
+      {{map, "map"}, {anywhere, "anywhere"}, {never, "never"}});
+}
+
 /// Decides whether a vehicle that lost its pilot may land where it hovers.
 ///
-///     LandingGuard guard("map", land_height_m);
+///     LandingGuard guard(LandingRule::map, land_height_m);
 ///     guard.set_map(grid);                                  // whenever one comes
 ///     if (auto answer = guard.check(position)) land(); else hold(answer.error());
 class LandingGuard {
  public:
-  /// @param rule "map": where the newest map shows the way down free; "anywhere": the ground is
-  ///        known to be free everywhere, no map is asked; "never" @param land_height_m [m]
-  /// Throws std::invalid_argument for another rule.
-  LandingGuard(const std::string& rule, double land_height_m);
+  /// @param land_height_m [m] map height of the vehicle's centre on the ground
+  LandingGuard(LandingRule rule, double land_height_m)
+      : rule_(rule), land_height_m_(land_height_m) {}
 
   void set_map(std::shared_ptr<const VoxelGrid> grid) { grid_ = std::move(grid); }
   /// Without a map it cannot decide.
-  bool needs_map() const { return rule_ == Rule::map && grid_ == nullptr; }
+  bool needs_map() const { return rule_ == LandingRule::map && grid_ == nullptr; }
 
   /// @return all of check_way_down(); no_map where none has come; cancelled where it never lands
   Status check(const Vec3& from_map) const;
 
  private:
-  enum class Rule { map, anywhere, never };
-  Rule rule_;
+  LandingRule rule_;
   double land_height_m_;
   std::shared_ptr<const VoxelGrid> grid_;
 };

@@ -2,12 +2,19 @@
 
 #include "goshawk/core/result.hpp"
 #include "goshawk/core/trajectory.hpp"
+#include "goshawk/core/words.hpp"
 
 namespace goshawk {
 
 /// What a velocity or acceleration limit bounds: its Euclidean length, each component apart, or its
 /// horizontal length and its vertical component apart.
 enum class LimitNorm { euclidean, per_axis, horizontal_vertical };
+constexpr auto words_of(LimitNorm) {
+  using enum LimitNorm;
+  return std::to_array<Named<LimitNorm>>({{euclidean, "euclidean"},
+                                          {per_axis, "per_axis"},
+                                          {horizontal_vertical, "horizontal_vertical"}});
+}
 
 struct Limits {
   double v_max_m_s = 2.0;   // [m/s] > 0

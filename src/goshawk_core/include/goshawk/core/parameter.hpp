@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "goshawk/core/result.hpp"
+#include "goshawk/core/words.hpp"
 
 namespace goshawk {
 
@@ -14,11 +15,12 @@ namespace goshawk {
 ///     template <typename Self, typename Visitor>
 ///     void describe(Self& config, Visitor&& visit) {
 ///       visit("radius_m", config.radius_m, "m", "radius of the vehicle's body", Range{0.0, 10.0});
-///       visit("planner", config.planner, "", "which search", OneOf{{"jastar", "astar"}});
+///       visit("planner", config.planner, "", "which search", Anything{});
 ///     }
 ///
 /// found by argument-dependent lookup. Visitors read YAML, write docs, or print values; the
-/// structs themselves know none of them. Value types: bool, int, double, std::string.
+/// structs themselves know none of them. Value types: bool, int, double, std::string, and enums
+/// that have words (words.hpp).
 
 /// lo <= value <= hi; NaN is never in range.
 struct Range {
@@ -30,12 +32,12 @@ struct Range {
   static Range positive(double hi = std::numeric_limits<double>::max()) { return {0.0, hi, true}; }
 };
 
-/// One of these words.
+/// One of these words, for a string; a choice that a core acts on is an enum instead.
 struct OneOf {
   std::vector<std::string> choices;
 };
 
-/// Anything of the right type (finite, for numbers).
+/// Anything of the right type: finite, for a number; one of its words, for an enum.
 struct Anything {};
 
 /// Around one of the above: the value may change while the program runs, between two requests
@@ -68,6 +70,10 @@ class ParameterFaults {
   void operator()(const char* name, const std::string& value, const char* unit, const char* text,
                   const OneOf& words);
   void operator()(const char*, const std::string&, const char*, const char*, const Anything&) {}
+  template <Worded E>
+  void operator()(const char* name, E value, const char*, const char*, const Anything&) {
+    if (to_word(value).empty()) add_not_listed(name, int(value), all_words<E>());
+  }
 
   void add(const std::string& fault);
   bool empty() const { return text_.empty(); }
@@ -76,8 +82,23 @@ class ParameterFaults {
   Status status(const std::string& prefix = "") const;
 
  private:
+  void add_not_listed(const char* name, int value, const std::vector<std::string>& words);
+
   std::string text_;
 };
+
+namespace detail {
+
+template <typename T>
+const T& comparable(const T& value) {
+  return value;
+}
+template <Worded E>
+std::string comparable(const E& value) {
+  return std::string(to_word(value));
+}
+
+}  // namespace detail
 
 /// Whether a config may follow on another while the program runs.
 /// @return invalid_parameter that names each parameter which differs and is not AtRunTime
@@ -86,13 +107,13 @@ Status check_change(const Config& from, const Config& to) {
   using Value = std::variant<bool, int, double, std::string>;
   std::vector<Value> before;
   describe(from, [&](const char*, const auto& value, const char*, const char*, const auto&) {
-    before.emplace_back(value);
+    before.emplace_back(detail::comparable(value));
   });
   std::string fixed;
   std::size_t i = 0;
   describe(to, [&]<typename Allowed>(const char* name, const auto& value, const char*, const char*,
                                      const Allowed&) {
-    const bool same = before[i++] == Value(value);
+    const bool same = before[i++] == Value(detail::comparable(value));
     if (!same && !is_at_run_time<Allowed>) fixed += (fixed.empty() ? "" : ", ") + std::string(name);
   });
   if (fixed.empty()) return success();

@@ -10,6 +10,11 @@ namespace goshawk {
 
 /// How a plan takes space that was never measured.
 enum class UnknownSpace { as_configured, blocked, free, costly };
+constexpr auto words_of(UnknownSpace) {
+  using enum UnknownSpace;
+  return std::to_array<Named<UnknownSpace>>(
+      {{as_configured, "as_configured"}, {blocked, "blocked"}, {free, "free"}, {costly, "costly"}});
+}
 
 /// One plan that is asked for. Frame `map`.
 struct PlanRequest {

@@ -12,10 +12,10 @@ inline constexpr double kGravity_m_s2 = 9.80665;  // standard gravity
 
 /// The 12 states of the vehicle. Frames: `map` (ENU), `base_link` (FLU).
 struct RigidBodyState {
-  Vec3 position_map = Vec3::Zero();                                // [m]
-  Vec3 velocity_map = Vec3::Zero();                                // [m/s]
+  Vec3 position_map = Vec3::Zero();                // [m]
+  Vec3 velocity_map = Vec3::Zero();                // [m/s]
   Quaternion q_map_base = Quaternion::Identity();  // base_link to map
-  Vec3 angular_velocity_base = Vec3::Zero();                       // [rad/s]
+  Vec3 angular_velocity_base = Vec3::Zero();       // [rad/s]
 
   bool is_finite() const {
     return position_map.allFinite() && velocity_map.allFinite() &&
@@ -26,9 +26,12 @@ struct RigidBodyState {
 /// What a tracker asks of a vehicle: collective thrust along the body's z axis, the attitude to
 /// take, and the body rates that go with it (feedforward).
 struct ThrustAttitude {
-  double thrust_n = 0.0;                                           // [N] >= 0
+  double thrust_n = 0.0;                           // [N] >= 0
   Quaternion q_map_base = Quaternion::Identity();  // wanted attitude
-  Vec3 angular_velocity_base = Vec3::Zero();                       // [rad/s] feedforward
+  Vec3 angular_velocity_base = Vec3::Zero();       // [rad/s] feedforward
 };
+
+/// Heading of the body's x axis. @return [rad] map, from x to y
+double yaw_of(const Quaternion& q_map_base);
 
 }  // namespace goshawk

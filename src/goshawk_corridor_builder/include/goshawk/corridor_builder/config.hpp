@@ -1,17 +1,17 @@
 #pragma once
 
 #include <concepts>
-#include <string>
 #include <type_traits>
 
 #include "goshawk/core/parameter.hpp"
+#include "goshawk/corridor_builder/choices.hpp"
 
 namespace goshawk::corridor_builder {
 
 /// What shapes a corridor. Lengths are in metres, joint clearance in voxel edges.
 struct Config {
-  std::string generator = "ellipsoid";  // ellipsoid (largest) or box (axis-aligned, cheapest)
-  std::string margin = "grown_grid";    // or sphere: a ball that is kept out of the raw map
+  Generator generator = Generator::ellipsoid;
+  Margin margin = Margin::grown_grid;
   double local_box_m = 2.0;             // how far a polytope may reach sideways of its segment
   double max_segment_m = 8.0;           // longer segments are split into equal parts
   int growth_passes = 3;                // re-inflations from the inscribed ellipsoid, at most
@@ -27,12 +27,12 @@ void describe(Self& config, Visitor&& visit) {
   visit(
       "generator", config.generator, "",
       "ellipsoid: inflation of an ellipsoid, largest polytopes; box: axis-aligned boxes, cheapest",
-      AtRunTime{OneOf{{"ellipsoid", "box"}}});
+      AtRunTime{Anything{}});
   visit("margin", config.margin, "",
         "how the vehicle's size is kept: grown_grid (planes before the grown voxels) or sphere "
         "(planes that a sphere of the same radius touches before the voxels as they are: larger "
         "corridors; generator ellipsoid only)",
-        OneOf{{"grown_grid", "sphere"}});
+        Anything{});
   visit("local_box_m", config.local_box_m, "m",
         "how far a polytope may reach beyond the axis-aligned box of its segment",
         AtRunTime{Range{0.0, 100.0, true}});

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Geometry>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -9,7 +8,7 @@
 #include <string_view>
 
 #include "goshawk/core/result.hpp"
-#include "goshawk/core/vector.hpp"
+#include "goshawk/core/vehicle.hpp"
 #include "goshawk/flight_check/body.hpp"
 
 namespace octomap {
@@ -23,9 +22,9 @@ namespace goshawk::flight_check {
 /// acceleration stays below a strays from that line by at most a dt^2 / 8 (0.1 mm at 100 Hz and
 /// 8 m/s^2): sample densely enough for the clearance you need.
 struct Sample {
-  double t_s = 0.0;                                                // [s]
-  Vec3 position_map = Vec3::Zero();                                // [m] of base_link
-  Eigen::Quaterniond q_map_base = Eigen::Quaterniond::Identity();  // base_link to map
+  double t_s = 0.0;                                // [s]
+  Vec3 position_map = Vec3::Zero();                // [m] of base_link
+  Quaternion q_map_base = Quaternion::Identity();  // base_link to map
 };
 
 /// What lies in a long gap between samples of a flown track is not known, so it cannot be judged.

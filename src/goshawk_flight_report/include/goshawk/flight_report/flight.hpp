@@ -1,34 +1,40 @@
 #pragma once
 
-#include <Eigen/Geometry>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "goshawk/core/certificate.hpp"
+#include "goshawk/core/committed_trajectory.hpp"
 #include "goshawk/core/grid_geometry.hpp"
-#include "goshawk/core/polytope.hpp"
-#include "goshawk/core/result.hpp"
-#include "goshawk/core/trajectory.hpp"
+#include "goshawk/core/vehicle.hpp"
 
 namespace goshawk::flight_report {
 
 /// Where the vehicle was at one moment, as flown. Frame `map`.
 struct FlownSample {
-  double t_s = 0.0;                                                // [s] on the flight's clock
-  Vec3 position_map = Vec3::Zero();                                // [m]
-  Vec3 velocity_map = Vec3::Zero();                                // [m/s]
-  Eigen::Quaterniond q_map_base = Eigen::Quaterniond::Identity();  // base_link to map
+  double t_s = 0.0;                                // [s] on the flight's clock
+  Vec3 position_map = Vec3::Zero();                // [m]
+  Vec3 velocity_map = Vec3::Zero();                // [m/s]
+  Quaternion q_map_base = Quaternion::Identity();  // base_link to map
 };
 
-/// From one goal to the next. Whatever is not there stays empty and is not drawn: a leg may have
-/// a path and no trajectory.
+/// From one goal to the next. What is missing stays empty and is not drawn: a leg may have a path
+/// and no trajectory.
 struct Leg {
   std::vector<Vec3> raw_path_map;   // [m] voxel centres as searched
   std::vector<Vec3> waypoints_map;  // [m] the pruned polyline
   std::vector<Polytope> corridor;
   Trajectory trajectory;
   double start_t_s = 0.0;  // [s] when the trajectory began, on the flight's clock
+  double yaw_rad = 0.0;    // heading all the way if there is no curve
+  std::optional<YawCurve> yaw_curve = {};
+
+  /// What is flown of it, without the path.
+  /// @param origin_ns when the flight's clock is 0
+  static Leg of(const CommittedTrajectory& committed, std::int64_t origin_ns);
+
+  /// Heading [rad], unwrapped. @param t_s since the trajectory began
+  double yaw_at(double t_s) const { return yaw_curve ? yaw_curve->yaw_rad(t_s) : yaw_rad; }
 };
 
 /// All that the pictures and files of one flight are made from.

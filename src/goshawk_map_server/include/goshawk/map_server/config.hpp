@@ -14,11 +14,11 @@ namespace goshawk::map_server {
 /// The map server's parameters; the defaults are valid.
 struct Config {
   std::string map_file = "";
-  std::string unknown = "occupied";
+  UnknownPolicy unknown = UnknownPolicy::occupied;
   double radius_m = 0.15;
   double margin_m = 0.05;
   double resolution_m = 0.2;
-  std::string cloud_meaning = "map";
+  CloudMeaning cloud_meaning = CloudMeaning::map;
   double max_range_m = 30.0;
   bool use_box = false;
   double box_x_min_m = 0.0;
@@ -40,7 +40,7 @@ void describe(Self& c, Visitor&& visit) {
   visit("unknown", c.unknown, "",
         "space that was not measured: occupied (an obstacle that grows), blocked (an obstacle "
         "that does not grow) or free",
-        OneOf{{"occupied", "blocked", "free"}});
+        Anything{});
   visit("radius_m", c.radius_m, "m", "radius of the ball around the vehicle", Range{0.0, 100.0});
   visit("margin_m", c.margin_m, "m", "added to the radius: covers the tracking error",
         Range{0.0, 100.0});
@@ -50,7 +50,7 @@ void describe(Self& c, Visitor&& visit) {
   visit("cloud_meaning", c.cloud_meaning, "",
         "what a cloud file says of the space between its points: map (free), points (nothing) or "
         "scan (the rays from the origin are free)",
-        OneOf{{"map", "points", "scan"}});
+        Anything{});
   visit("max_range_m", c.max_range_m, "m", "longest ray of a scan that may hit something",
         AtRunTime{Range::positive(1000.0)});
   visit("use_box", c.use_box, "", "cut the map to the box; needed where map_file is empty",
@@ -69,8 +69,7 @@ void describe(Self& c, Visitor&& visit) {
       Anything{});
 }
 
-/// The config in the terms of the functions that do the work. @pre values as describe() allows;
-/// unknown words throw std::invalid_argument
+/// The config in the terms of the functions that do the work. @pre values as describe() allows
 LoadOptions load_options(const Config& config);
 VoxelizeOptions voxelize_options(const Config& config);
 Growth growth(const Config& config);

@@ -8,6 +8,7 @@
 
 #include "goshawk/core/result.hpp"
 #include "goshawk/core/vector.hpp"
+#include "goshawk/core/words.hpp"
 #include "goshawk/map_server/octree.hpp"
 
 namespace goshawk::map_server {
@@ -19,6 +20,11 @@ enum class CloudMeaning {
   scan,    // one scan: the rays from the sensor to the points are free, the rest unknown; points
            // at the sensor itself are missing returns
 };
+
+constexpr auto words_of(CloudMeaning) {
+  using enum CloudMeaning;
+  return std::to_array<Named<CloudMeaning>>({{map, "map"}, {points, "points"}, {scan, "scan"}});
+}
 
 /// How to read files that do not say it themselves. OctoMap files bring their resolution and their
 /// knowledge of free space along and use only max_voxels.

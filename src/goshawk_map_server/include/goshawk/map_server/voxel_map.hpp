@@ -2,10 +2,10 @@
 
 #include <cstdint>
 #include <optional>
-#include <string_view>
 
 #include "goshawk/core/grid_geometry.hpp"
 #include "goshawk/core/result.hpp"
+#include "goshawk/core/words.hpp"
 #include "goshawk/map_server/octree.hpp"
 
 namespace goshawk::map_server {
@@ -40,8 +40,11 @@ enum class UnknownPolicy {
   free,      // unknown voxels are free
 };
 
-std::string_view to_string(UnknownPolicy policy);
-std::optional<UnknownPolicy> unknown_policy(std::string_view word);
+constexpr auto words_of(UnknownPolicy) {
+  using enum UnknownPolicy;
+  return std::to_array<Named<UnknownPolicy>>(
+      {{occupied, "occupied"}, {blocked, "blocked"}, {free, "free"}});
+}
 
 /// How raw voxels become what the planning stages see.
 struct Growth {

@@ -1,18 +1,21 @@
 #pragma once
 
 #include <concepts>
-#include <string>
 #include <type_traits>
 
-#include "goshawk/core/certificate.hpp"
 #include "goshawk/core/parameter.hpp"
+#include "goshawk/core/plan_request.hpp"
 
 namespace goshawk::navigator {
 
 struct Config {
   double v_max_m_s = 2.0;
   double a_max_m_s2 = 2.0;
-  std::string limit_norm = "euclidean";
+  LimitNorm limit_norm = LimitNorm::euclidean;
+  double j_max_m_s3 = 0.0;
+  double v_max_vertical_m_s = 0.0;
+  double a_max_vertical_m_s2 = 0.0;
+  UnknownSpace unknown = UnknownSpace::as_configured;
   double plan_timeout_s = 1.0;
   int max_attempts = 5;
   double replan_lead_s = 0.3;
@@ -23,38 +26,65 @@ struct Config {
   double odometry_timeout_s = 0.5;
 
   Limits limits() const {
-    return {v_max_m_s, a_max_m_s2,
-            limit_norm == "euclidean" ? LimitNorm::euclidean : LimitNorm::per_axis};
+    return {.v_max_m_s = v_max_m_s,
+            .a_max_m_s2 = a_max_m_s2,
+            .norm = limit_norm,
+            .j_max_m_s3 = j_max_m_s3,
+            .v_max_vertical_m_s = v_max_vertical_m_s,
+            .a_max_vertical_m_s2 = a_max_vertical_m_s2};
   }
 };
 
+namespace detail {
+
 template <typename Self, typename Visitor>
-requires std::same_as<std::remove_const_t<Self>, Config>
-void describe(Self& c, Visitor&& visit) {
+void describe_request(Self& c, Visitor& visit) {
   visit("v_max_m_s", c.v_max_m_s, "m/s", "speed limit of every plan",
         AtRunTime{Range::positive(100.0)});
   visit("a_max_m_s2", c.a_max_m_s2, "m/s^2", "acceleration limit of every plan",
         AtRunTime{Range::positive(100.0)});
   visit("limit_norm", c.limit_norm, "",
-        "what the limits bound: the Euclidean length, or each component",
-        AtRunTime{OneOf{{"euclidean", "per_axis"}}});
-  visit("plan_timeout_s", c.plan_timeout_s, "s", "a plan that takes longer is asked for again",
+        "what the limits bound: the Euclidean length, each component, or the horizontal length and "
+        "the vertical component apart",
+        AtRunTime{Anything{}});
+  visit("j_max_m_s3", c.j_max_m_s3, "m/s^3", "limit of the jerk's Euclidean length; 0: none",
+        AtRunTime{Range{0.0, 1e4}});
+  visit("v_max_vertical_m_s", c.v_max_vertical_m_s, "m/s",
+        "vertical speed limit, with limit_norm horizontal_vertical; 0: v_max_m_s",
+        AtRunTime{Range{0.0, 100.0}});
+  visit("a_max_vertical_m_s2", c.a_max_vertical_m_s2, "m/s^2",
+        "vertical acceleration limit, with limit_norm horizontal_vertical; 0: a_max_m_s2",
+        AtRunTime{Range{0.0, 100.0}});
+  visit("unknown", c.unknown, "",
+        "how the search takes space that was never measured: as_configured (its own parameter), "
+        "blocked, free or costly; the last two need a map that leaves it free (map_server: "
+        "unknown: free)",
+        AtRunTime{Anything{}});
+}
+
+}  // namespace detail
+
+template <typename Self, typename Visitor>
+requires std::same_as<std::remove_const_t<Self>, Config>
+void describe(Self& c, Visitor&& visit) {
+  detail::describe_request(c, visit);
+  visit("plan_timeout_s", c.plan_timeout_s, "s", "a plan that takes longer is requested again",
         AtRunTime{Range{0.01, 600.0}});
-  visit("max_attempts", c.max_attempts, "", "how often a plan is asked for before giving up",
+  visit("max_attempts", c.max_attempts, "", "how often to ask for a plan before giving up",
         AtRunTime{Range{1, 100}});
   visit("replan_lead_s", c.replan_lead_s, "s",
         "a plan from a moving start begins this far ahead on the present trajectory",
         AtRunTime{Range{0.02, 10.0}});
-  visit("commit_lead_s", c.commit_lead_s, "s", "a plan from rest starts this long after it came",
+  visit("commit_lead_s", c.commit_lead_s, "s", "a plan from rest starts this long after it arrives",
         AtRunTime{Range{0.0, 10.0}});
-  visit("arrival_tolerance_m", c.arrival_tolerance_m, "m", "this near to the goal is arrived",
-        AtRunTime{Range::positive(10.0)});
-  visit("rest_speed_m_s", c.rest_speed_m_s, "m/s", "slower than this is at rest",
+  visit("arrival_tolerance_m", c.arrival_tolerance_m, "m",
+        "a vehicle this near to the goal has arrived", AtRunTime{Range::positive(10.0)});
+  visit("rest_speed_m_s", c.rest_speed_m_s, "m/s", "a vehicle slower than this is at rest",
         Range::positive(10.0));
   visit("settle_timeout_s", c.settle_timeout_s, "s",
         "how long a plan waits for odometry and for the vehicle to come to rest",
         AtRunTime{Range::positive(600.0)});
-  visit("odometry_timeout_s", c.odometry_timeout_s, "s", "older odometry is none",
+  visit("odometry_timeout_s", c.odometry_timeout_s, "s", "odometry older than this is not used",
         Range::positive(60.0));
 }
 

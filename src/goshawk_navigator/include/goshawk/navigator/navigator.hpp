@@ -6,7 +6,9 @@
 #include <variant>
 #include <vector>
 
-#include "goshawk/core/trajectory.hpp"
+#include "goshawk/core/committed_trajectory.hpp"
+#include "goshawk/core/plan_request.hpp"
+#include "goshawk/core/vehicle.hpp"
 #include "goshawk/navigator/config.hpp"
 
 namespace goshawk::navigator {
@@ -14,27 +16,15 @@ namespace goshawk::navigator {
 enum class State { idle, planning, flying, arrived, failed };
 std::string_view to_string(State state);
 
-/// What the navigator wants done; the component turns it into messages.
-struct PlanOrder {
-  std::uint64_t id = 0;
-  std::int64_t stamp_ns = 0;
-  FlatState start;
-  FlatState goal;
-  double yaw_rad = 0.0;
-  double deadline_s = 0.0;
-};
-struct CommitOrder {
-  std::uint64_t id = 0;
-  std::int64_t start_time_ns = 0;
-  double yaw_rad = 0.0;
-};
+/// What the navigator tells everyone.
 struct StateOrder {
   State state = State::idle;
   std::uint64_t id = 0;
   Vec3 goal_map = Vec3::Zero();
   Error reason{ErrorCode::ok, ""};
 };
-using Order = std::variant<PlanOrder, CommitOrder, StateOrder>;
+/// What the navigator wants sent; the component turns it into messages.
+using Order = std::variant<PlanRequest, CommittedTrajectory, StateOrder>;
 
 /// From goals to committed trajectories. Knows no middleware and no clock: every event brings the
 /// time, and leaves orders to take.
@@ -53,11 +43,12 @@ class Navigator {
   /// @return invalid_parameter: out of range, or what cannot change at run time; then as before
   Status reconfigure(const Config& config);
 
-  /// @param yaw_rad heading at the goal, map x to y @return invalid_input where not finite
+  /// @param yaw_rad heading at the goal, map x to y @return invalid_input if not finite
   Status on_goal(const Vec3& goal_map, double yaw_rad, std::int64_t now_ns);
-  void on_odometry(const Vec3& position_map, const Vec3& velocity_map, std::int64_t now_ns);
-  /// A certified trajectory for request `id`. Others than the open request's are ignored.
-  void on_trajectory(std::uint64_t id, Trajectory trajectory, std::int64_t now_ns);
+  void on_odometry(const RigidBodyState& vehicle, std::int64_t now_ns);
+  /// An answer to a request; others than the open one's are ignored.
+  /// @param candidate without start time and yaw, which are set here
+  void on_trajectory(Commitment candidate, std::int64_t now_ns);
   /// A stage has answered a request: with ok, or with why not.
   void on_report(std::uint64_t id, std::string_view stage, const Error& outcome,
                  std::int64_t now_ns);
@@ -79,15 +70,22 @@ class Navigator {
     std::string last_stage;                 // that answered ok
   };
   struct Flight {
-    std::uint64_t id = 0;
-    Trajectory trajectory;
-    std::int64_t start_ns = 0;
+    CommittedTrajectory committed;
     std::int64_t end_ns = 0;
     Goal goal;
   };
+  struct Start {  // what a plan begins with
+    FlatState state;
+    double yaw_rad = 0.0;
+    double yaw_rate_rad_s = 0.0;
+    std::optional<std::int64_t> time_ns = {};  // none: at rest, whenever
+  };
 
   void plan(std::int64_t now_ns);
-  void ask(const FlatState& start, std::optional<std::int64_t> switch_ns, std::int64_t now_ns);
+  Start start_on(const Flight& flight, std::int64_t time_ns) const;
+  Start start_at_rest() const;
+  void ask(const Start& start, std::int64_t now_ns);
+  void drop_open();
   void plan_again(const Error& reason, std::int64_t now_ns);
   void give_up(const Error& reason);
   void tracker_failed(const Error& reason, std::int64_t now_ns);
@@ -107,9 +105,9 @@ class Navigator {
   std::int64_t wait_begin_ns_ = 0;  // since when a plan waits for the vehicle to come to rest
   double lead_s_;
   std::optional<Open> open_;
+  std::uint64_t dropped_id_ = 0;  // a request that nobody needs an answer to any more
   std::optional<Flight> flight_;
-  Vec3 position_map_ = Vec3::Zero();
-  Vec3 velocity_map_ = Vec3::Zero();
+  RigidBodyState vehicle_;
   std::optional<std::int64_t> odometry_ns_;
   std::vector<Order> orders_;
 };

@@ -6,15 +6,16 @@
 
 #include "goshawk/core/parameter.hpp"
 #include "goshawk/core/result.hpp"
+#include "goshawk/path_search/choices.hpp"
 
 namespace goshawk::path_search {
 
 /// The parameters of the stage. The defaults suit a corridor builder behind it: the shortest path,
 /// the ends as they are, unknown space as the map has it.
 struct Config {
-  std::string planner = "jastar";
-  std::string corner_rule = "no_squeeze";
-  std::string pruning = "shortest";
+  Planner planner = Planner::jastar;
+  CornerRule corner_rule = CornerRule::no_squeeze;
+  Pruning pruning = Pruning::shortest;
   double time_limit_s = 10.0;
 
   double move_within_m = 0.0;
@@ -22,12 +23,12 @@ struct Config {
   std::string search_box;
 
   double z_weight = 0.0;
-  std::string unknown = "as_mapped";
+  UnknownRule unknown = UnknownRule::as_mapped;
   double unknown_weight = 1.0;
   double clearance_m = 0.0;
   double clearance_weight = 1.0;
 
-  std::string validity = "grid";
+  Validity validity = Validity::grid;
   int max_iterations = 2000;
   double step_m = 1.0;
   int seed = 1;
@@ -43,17 +44,16 @@ void describe(Self& c, Visitor&& visit) {
   visit("planner", c.planner, "",
         "grid search: jastar (fastest, exact), astar (octile heuristic), astar_euclidean, "
         "astar_manhattan (fast, not exact) or dijkstra; by sampling (OMPL): rrt, rrtstar or prm",
-        AtRunTime{OneOf{{"jastar", "astar", "astar_euclidean", "astar_manhattan", "dijkstra", "rrt",
-                         "rrtstar", "prm"}}});
+        AtRunTime{Anything{}});
   visit("corner_rule", c.corner_rule, "",
         "no_squeeze: every voxel of the box that a move spans is free, as a corridor needs; "
         "squeeze: only the target voxel is, so paths may touch obstacle edges",
-        AtRunTime{OneOf{{"no_squeeze", "squeeze"}}});
+        AtRunTime{Anything{}});
   visit("pruning", c.pruning, "",
         "waypoints: shortest (shortest polyline over the path's own nodes), relaxed (that, pulled "
         "tight off the voxel centres: shorter, but along obstacles), greedy (farthest visible "
         "node) or none",
-        AtRunTime{OneOf{{"shortest", "relaxed", "greedy", "none"}}});
+        AtRunTime{Anything{}});
   visit("time_limit_s", c.time_limit_s, "s",
         "longest search; a request's own deadline may be shorter", AtRunTime{Range::positive(1e6)});
   visit("move_within_m", c.move_within_m, "m",
@@ -71,7 +71,7 @@ void describe(Self& c, Visitor&& visit) {
   visit("unknown", c.unknown, "",
         "space never measured: as_mapped, blocked, free, or costly; the last two ask for a map "
         "that leaves it free (map_server: unknown: free)",
-        AtRunTime{OneOf{{"as_mapped", "blocked", "free", "costly"}}});
+        AtRunTime{Anything{}});
   visit("unknown_weight", c.unknown_weight, "",
         "where unknown is costly: a move into it costs 1 + this times its length",
         AtRunTime{Range{0.0, 1e3}});
@@ -84,7 +84,7 @@ void describe(Self& c, Visitor&& visit) {
   visit("validity", c.validity, "",
         "rrt, rrtstar, prm: what says that a segment is free: grid (exact line of sight) or fcl "
         "(collision checks of the Flexible Collision Library; slower, for comparisons)",
-        AtRunTime{OneOf{{"grid", "fcl"}}});
+        AtRunTime{Anything{}});
   visit("max_iterations", c.max_iterations, "",
         "rrt, rrtstar, prm: samples before giving up (rrt) or being content",
         AtRunTime{Range{1.0, 1e8}});

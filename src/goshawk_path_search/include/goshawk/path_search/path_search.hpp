@@ -69,9 +69,9 @@ class PathSearch {
   std::string_view planner_name() const { return planner_->name(); }
 
  private:
-  PathSearch(const Config& config, std::unique_ptr<GridPlanner> planner, CornerRule rule,
-             Pruning pruning, const std::optional<SearchBox>& box)
-      : config_(config), planner_(std::move(planner)), rule_(rule), pruning_(pruning), box_(box) {}
+  PathSearch(const Config& config, std::unique_ptr<GridPlanner> planner,
+             const std::optional<SearchBox>& box)
+      : config_(config), planner_(std::move(planner)), box_(box) {}
   Status place(const PlanQuery& query);
   Status search(const PlanQuery& query, PlannedPath& path);
   void fill(PlannedPath& path);
@@ -79,8 +79,6 @@ class PathSearch {
 
   Config config_;
   std::unique_ptr<GridPlanner> planner_;
-  CornerRule rule_;
-  Pruning pruning_;
   std::optional<SearchBox> box_;
   PathPruner pruner_;
   double planner_resolution_m_ = 0.0;

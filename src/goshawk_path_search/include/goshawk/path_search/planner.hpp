@@ -13,12 +13,6 @@
 
 namespace goshawk::path_search {
 
-/// When may a path move diagonally past blocked voxels? (corrections.md, Corner cutting)
-enum class CornerRule {
-  no_squeeze,  // every voxel of the box that the move spans is free
-  squeeze,     // the target voxel is free
-};
-
 /// What a search did. A node is expanded when its successors are made, generated when it is put
 /// into the queue; one that is improved after its expansion counts again.
 struct Counters {
@@ -50,7 +44,7 @@ class GridPlanner {
  public:
   virtual ~GridPlanner() = default;
 
-  /// The value of Config::planner that makes it.
+  /// The word of Config::planner, or, if weights take another search, that one's name.
   virtual std::string_view name() const = 0;
 
   /// Takes over the obstacles; `blocked` is not kept. The same size as before costs one pass over
@@ -84,8 +78,5 @@ Error no_way(const GridQuery& query);
 /// @return the planner that the configuration names; with weights, one that is exact about them.
 /// invalid_parameter where the configuration is wrong, or asks for what that planner cannot do
 Result<std::unique_ptr<GridPlanner>> make_planner(const Config& config, double resolution_m = 0.2);
-
-/// @return invalid_parameter for a word that is not a corner rule
-Result<CornerRule> parse_corner_rule(std::string_view word);
 
 }  // namespace goshawk::path_search

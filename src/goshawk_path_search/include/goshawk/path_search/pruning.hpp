@@ -2,24 +2,13 @@
 
 #include <cstdint>
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include "goshawk/core/bit_grid.hpp"
-#include "goshawk/core/result.hpp"
 #include "goshawk/core/vector.hpp"
+#include "goshawk/path_search/choices.hpp"
 
 namespace goshawk::path_search {
-
-enum class Pruning {
-  none,      // every node stays
-  greedy,    // thesis, Algorithm 2
-  shortest,  // the shortest polyline over the path's own nodes
-  relaxed,   // the nodes of shortest; relaxation.hpp then moves them
-};
-
-/// @return invalid_parameter for a word that is not a pruning
-Result<Pruning> parse_pruning(std::string_view word);
 
 /// Drops nodes of a voxel path by exact line of sight (goshawk::line_is_free). Works on the real
 /// points, so that the ends stay where they are. A segment between neighbours of the path is taken

@@ -6,11 +6,6 @@
 
 namespace goshawk::path_search {
 
-enum class SamplingMethod { rrt, rrtstar, prm };
-
-/// What says that a segment is free (segment_validity.hpp).
-enum class Validity { grid, fcl };
-
 struct SamplingOptions {
   int max_iterations = 2000;  // samples; rrt ends with its first path, the others use all
   double step_voxels = 5.0;   // longest edge of a tree
@@ -25,7 +20,7 @@ struct SamplingOptions {
 /// deadline ends it, RRT* and PRM give the best path so far, deadline_exceeded if there is none;
 /// no_path means that the iterations did not suffice, not that there is none.
 /// Counters: expanded are iterations, generated the nodes of tree or road map.
-std::unique_ptr<GridPlanner> make_sampling_search(SamplingMethod method,
-                                                  const SamplingOptions& options);
+/// @param planner rrt, rrtstar or prm; others throw std::invalid_argument
+std::unique_ptr<GridPlanner> make_sampling_search(Planner planner, const SamplingOptions& options);
 
 }  // namespace goshawk::path_search

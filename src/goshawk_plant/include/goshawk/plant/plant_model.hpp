@@ -10,7 +10,7 @@ namespace goshawk::plant {
 /// Twelve states of the body and four of the rotors.
 struct PlantState {
   RigidBodyState body;
-  Eigen::Vector4d rotor_speed_rad_s = Eigen::Vector4d::Zero();
+  Vec4 rotor_speed_rad_s = Vec4::Zero();
 };
 
 /// What moves when rotors turn: all that an autopilot knows of a simulated plant. goshawk_simulator
@@ -23,8 +23,7 @@ class PlantModel {
   virtual void reset(const PlantState& state) = 0;
   /// @param rotor_command_rad_s wanted rotor speeds, constant over the step, like the wind
   /// @param wind_map [m/s] @param dt_s > 0
-  virtual void step(const Eigen::Vector4d& rotor_command_rad_s, const Vec3& wind_map,
-                    double dt_s) = 0;
+  virtual void step(const Vec4& rotor_command_rad_s, const Vec3& wind_map, double dt_s) = 0;
   virtual const PlantState& state() const = 0;
   /// [m/s^2] of the centre of mass, gravity and all forces included (zero at hover)
   virtual Vec3 acceleration_map(const Vec3& wind_map) const = 0;

@@ -66,6 +66,14 @@ std::string parse(const ParameterSource::Entry& entry, bool& value);
 std::string parse(const ParameterSource::Entry& entry, int& value);
 std::string parse(const ParameterSource::Entry& entry, double& value);
 std::string parse(const ParameterSource::Entry& entry, std::string& value);
+std::string not_a_choice(const std::string& word, const std::vector<std::string>& choices);
+template <Worded E>
+std::string parse(const ParameterSource::Entry& entry, E& value) {
+  const auto parsed = from_word<E>(entry.text);
+  if (!parsed) return not_a_choice(entry.text, all_words<E>());
+  value = *parsed;
+  return "";
+}
 
 std::string range_fault(double value, const Range& range);
 inline std::string range_fault(double value, const Anything&) {
@@ -75,15 +83,31 @@ std::string range_fault(const std::string& value, const OneOf& one_of);
 inline std::string range_fault(const std::string&, const Anything&) {
   return "";
 }
+template <Worded E>
+std::string range_fault(E, const Anything&) {
+  return "";
+}
 
 std::string to_text(bool value);
 std::string to_text(int value);
 std::string to_text(double value);
 std::string to_text(const std::string& value);
-std::string to_text(const Range& range);
-std::string to_text(const OneOf& one_of);
-inline std::string to_text(const Anything&) {
-  return "";
+template <Worded E>
+std::string to_text(E value) {
+  return std::string(to_word(value));
+}
+
+/// What a value may be, in words; empty if anything goes.
+std::string range_text(const Range& range);
+std::string range_text(const OneOf& one_of);
+template <typename T, typename Allowed>
+std::string range_of(const Allowed& allowed) {
+  if constexpr (!std::is_base_of_v<Anything, Allowed>)
+    return range_text(allowed);
+  else if constexpr (Worded<T>)
+    return range_text(OneOf{all_words<T>()});
+  else
+    return "";
 }
 
 /// Which parameters may be given: all at start, those AtRunTime later, or none any more.
@@ -175,7 +199,7 @@ std::vector<ParameterDescription> describe_parameters(const Config& config) {
     using T = std::remove_cvref_t<decltype(value)>;
     using Allowed = std::remove_cvref_t<decltype(allowed)>;
     list.push_back({name, detail::type_name<T>(), unit, text, detail::to_text(value),
-                    detail::to_text(allowed), "", is_at_run_time<Allowed>});
+                    detail::range_of<T>(allowed), "", is_at_run_time<Allowed>});
   });
   std::size_t i = 0;
   describe(config, [&](const char*, const auto& value, const char*, const char*, const auto&) {

@@ -3,6 +3,7 @@
 #include <concepts>
 #include <type_traits>
 
+#include "goshawk/core/landing.hpp"
 #include "goshawk/core/parameter.hpp"
 #include "goshawk/plant/vehicle_parameters.hpp"
 #include "goshawk/simulator/attitude_controller.hpp"
@@ -16,7 +17,7 @@ struct Config {
   double command_timeout_s = 0.1;
   double failsafe_tilt_rad = 0.87;
   double failsafe_hold_s = 10.0;
-  std::string landing = "map";
+  LandingRule landing = LandingRule::map;
   double land_speed_m_s = 0.3;
   double land_height_m = 0.1;
   SensorParameters sensor;
@@ -74,7 +75,7 @@ void describe(Self& c, Visitor&& visit) {
   visit("landing", c.landing, "",
         "it lands where the map shows the way straight down free (map), as if it were free "
         "everywhere (anywhere), or never",
-        OneOf{{"map", "anywhere", "never"}});
+        Anything{});
   visit("land_speed_m_s", c.land_speed_m_s, "m/s", "its descent", Range{0.05, 2.0});
   visit("land_height_m", c.land_height_m, "m",
         "height in the map at which a landing ends: the ground, plus the legs", Anything{});

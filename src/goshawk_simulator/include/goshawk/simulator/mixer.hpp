@@ -17,14 +17,14 @@ class Mixer {
   /// @pre parameters.check() ok
   explicit Mixer(const plant::VehicleParameters& parameters);
 
-  Wrench wrench(const Eigen::Vector4d& rotor_thrust_n) const;
+  Wrench wrench(const Vec4& rotor_thrust_n) const;
 
   /// Rotor thrusts in [0, max_motor_thrust_n] that give the wanted wrench where the motors can.
   /// Where they cannot, roll and pitch torque come first (without them the vehicle tumbles), then
   /// collective thrust, then yaw torque, for which thrust gives way by at most a tenth of a
   /// motor's maximum. After Faessler, Falanga, Scaramuzza 2017 (RA-L), section on saturation.
   /// @pre wanted is finite
-  Eigen::Vector4d allocate(const Wrench& wanted) const;
+  Vec4 allocate(const Wrench& wanted) const;
 
  private:
   double max_n_;

@@ -17,15 +17,15 @@ class Plant {
   /// One Runge-Kutta step of fourth order; rotor commands and wind are constant in it. The
   /// quaternion comes back normalised.
   /// @param rotor_command_rad_s wanted rotor speeds @param wind_map [m/s] @param dt_s > 0
-  plant::PlantState step(const plant::PlantState& state, const Eigen::Vector4d& rotor_command_rad_s,
+  plant::PlantState step(const plant::PlantState& state, const Vec4& rotor_command_rad_s,
                          const Vec3& wind_map, double dt_s) const;
 
   /// [m/s^2] of the centre of mass, gravity and all forces included (zero at hover)
   Vec3 acceleration_map(const plant::PlantState& state, const Vec3& wind_map) const;
 
-  Eigen::Vector4d rotor_thrust_n(const Eigen::Vector4d& rotor_speed_rad_s) const;
+  Vec4 rotor_thrust_n(const Vec4& rotor_speed_rad_s) const;
   /// Inverse of the above, for thrusts in [0, max_motor_thrust_n].
-  Eigen::Vector4d rotor_speed_rad_s(const Eigen::Vector4d& rotor_thrust_n) const;
+  Vec4 rotor_speed_rad_s(const Vec4& rotor_thrust_n) const;
 
   const plant::VehicleParameters& parameters() const { return parameters_; }
   const Mixer& mixer() const { return mixer_; }
@@ -33,8 +33,7 @@ class Plant {
 
  private:
   using Packed = Eigen::Matrix<double, 17, 1>;
-  Packed derivative(const Packed& x, const Eigen::Vector4d& rotor_command_rad_s,
-                    const Vec3& wind_map) const;
+  Packed derivative(const Packed& x, const Vec4& rotor_command_rad_s, const Vec3& wind_map) const;
 
   plant::VehicleParameters parameters_;
   Mixer mixer_;

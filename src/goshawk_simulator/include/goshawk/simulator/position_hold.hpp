@@ -39,7 +39,4 @@ class PositionHold {
   double yaw_rad_ = 0.0;
 };
 
-/// [rad] heading of the body's x axis in the map
-double yaw_of(const Eigen::Quaterniond& q_map_base);
-
 }  // namespace goshawk::simulator

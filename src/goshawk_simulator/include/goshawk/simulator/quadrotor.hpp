@@ -71,7 +71,7 @@ class Quadrotor {
   /// What the estimator says: late and noisy, as configured. Draws noise each time it is asked.
   Measurement measure() { return sensor_.measure(); }
   Vec3 acceleration_map() const { return plant_->acceleration_map(wind_.velocity_map()); }
-  Eigen::Vector4d rotor_thrust_n() const;
+  Vec4 rotor_thrust_n() const;
   Vec3 wind_map() const { return wind_.velocity_map(); }
   /// [ns] simulated time since creation: whole steps only
   std::int64_t time_ns() const { return time_ns_; }

@@ -26,12 +26,11 @@ inline std::int64_t wire_time_ns(const std_msgs::msg::Header& header,
 
 /// Takes a request in. @return the request if it is valid and within its deadline; otherwise
 /// nothing, and the failure has been reported
-inline std::optional<conversions::PlanRequest> open_request(const goshawk_msgs::msg::PlanRequest& m,
-                                                            std::int64_t now_ns,
-                                                            StageReporter& reporter,
-                                                            Timing timing) {
+inline std::optional<PlanRequest> open_request(const goshawk_msgs::msg::PlanRequest& m,
+                                               std::int64_t now_ns, StageReporter& reporter,
+                                               Timing timing) {
   auto request = conversions::from_msg(m);
-  Status status = request ? conversions::check_deadline(*request, now_ns) : request.error();
+  Status status = request ? check_deadline(*request, now_ns) : request.error();
   if (status) return *std::move(request);
   reporter.failed(m.id(), status.error(), timing);
   return {};

@@ -4,6 +4,7 @@
 #include <string>
 #include <type_traits>
 
+#include "goshawk/core/landing.hpp"
 #include "goshawk/core/parameter.hpp"
 #include "goshawk/core/result.hpp"
 
@@ -41,7 +42,7 @@ struct Config {
   double brake_acceleration_m_s2 = 2.0;
   double stop_acceleration_m_s2 = 5.0;
   double navigator_timeout_s = 2.0;
-  std::string landing = "map";
+  LandingRule landing = LandingRule::map;
   double land_after_s = 10.0;
   double land_speed_m_s = 0.3;
   double land_height_m = 0.1;
@@ -125,7 +126,7 @@ void describe_safety(Self& c, Visitor& visit) {
   visit("landing", c.landing, "",
         "without a navigator: land where the map shows the way straight down free (map), as if it "
         "were free everywhere (anywhere), or never",
-        OneOf{{"map", "anywhere", "never"}});
+        Anything{});
   visit("land_after_s", c.land_after_s, "s",
         "without a navigator: how long the vehicle holds at rest before it lands",
         AtRunTime{Range{0.0, 3600.0}});

@@ -17,9 +17,6 @@ ThrustAttitude thrust_attitude_of(const Vec3& specific_force_map,
                                   const Vec3& specific_force_rate_map, double yaw_rad,
                                   double yaw_rate_rad_s, double mass_kg);
 
-/// [rad] heading of the body's x axis in the map
-double yaw_of(const Eigen::Quaterniond& q_map_base);
-
 /// @return the same angle in [-pi, pi]
 double wrapped(double angle_rad);
 
