@@ -1,6 +1,5 @@
 #include "common/report.hpp"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -127,26 +126,17 @@ int Report::finish() const {
   return options_.plots.empty() ? 0 : write_pictures(to_json(), options_.plots);
 }
 
-int bench_main(int argc, char** argv, const std::string& name, const std::string& what,
-               void (*run)(Report&)) {
-  Options options;
-  CLI::App app(what, "goshawk bench " + name);
-  app.add_flag("--json", options.json, "one JSON object on standard output");
-  app.add_flag("--quick", options.quick, "less of everything: ends within 40 s");
-  app.add_option("--plots", options.plots, "folder for pictures and the report as JSON");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? 0 : 2;
-  }
-  Report report(name, options);
-  try {
+Options Options::of(const Call& call) {
+  return {call.at("json").get<bool>(), call.at("quick").get<bool>(),
+          call.at("plots").get<std::string>()};
+}
+
+int bench_main(int argc, char** argv, const std::string& name, void (*run)(Report&)) {
+  return bench_call(argc, argv, name, [&](const Call& call) {
+    Report report(name, Options::of(call));
     run(report);
-  } catch (const std::exception& e) {
-    std::fprintf(stderr, "goshawk bench %s: %s\n", name.c_str(), e.what());
-    return 1;
-  }
-  return report.finish();
+    return report.finish();
+  });
 }
 
 }  // namespace goshawk::bench

@@ -4,13 +4,17 @@
 #include <string>
 #include <vector>
 
+#include "common/call.hpp"
+
 namespace goshawk::bench {
 
-/// What every bench program understands.
+/// What most bench programs understand.
 struct Options {
-  bool json = false;   // one JSON object on standard output, else a table
-  bool quick = false;  // less of everything: ends within 40 s
-  std::string plots;   // folder for the pictures, empty for none
+  bool json = false;       // one JSON object on standard output, else a table
+  bool quick = false;      // less of everything: ends within 40 s
+  std::string plots = {};  // folder for the pictures, empty for none
+
+  static Options of(const Call& call);
 };
 
 /// Lines or points of some rows: x and y are keys of the rows, one line for each value of
@@ -62,7 +66,7 @@ class Report {
   std::string to_text() const;
 
   /// Writes to standard output, then draws with matplotlib.
-  /// @return exit status: 0, or 1 with a sentence on standard error where a picture failed
+  /// @return exit status: 0, or 1 with a sentence on standard error if a picture failed
   int finish() const;
 
  private:
@@ -73,10 +77,9 @@ class Report {
   std::vector<Plot> plots_;
 };
 
-/// A bench program's main: parses the common options, runs, writes.
+/// main() of a bench program that has no options of its own.
 /// @param run fills the report
-/// @return 0; 1 where `run` threw or a picture failed; 2 for a wrong call
-int bench_main(int argc, char** argv, const std::string& name, const std::string& what,
-               void (*run)(Report&));
+/// @return 0; 1 if `run` threw or a picture failed
+int bench_main(int argc, char** argv, const std::string& name, void (*run)(Report&));
 
 }  // namespace goshawk::bench

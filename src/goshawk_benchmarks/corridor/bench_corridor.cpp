@@ -276,8 +276,5 @@ void run(Report& report) {
 }  // namespace goshawk::bench
 
 int main(int argc, char** argv) {
-  return goshawk::bench::bench_main(
-      argc, argv, "corridor",
-      "Convex corridors: time, volume and faces beside ellipsoid decomposition on voxel centres.",
-      goshawk::bench::run);
+  return goshawk::bench::bench_main(argc, argv, "corridor", goshawk::bench::run);
 }

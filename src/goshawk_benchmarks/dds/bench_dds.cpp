@@ -3,7 +3,6 @@
 
 #include <signal.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
 #include <cstdio>
@@ -33,14 +32,14 @@ constexpr Size kSizes[] = {{"setpoint", 200},    {"path", 4'000},    {"trajector
 volatile sig_atomic_t g_stopped = 0;
 
 std::vector<std::string> words(const LinkOptions& o) {
-  std::vector<std::string> list{this_program(), "--echo",
-                                "--way",        o.way,
-                                "--bytes",      std::to_string(o.bytes),
-                                "--domain",     std::to_string(o.domain)};
-  if (!o.reliable) list.emplace_back("--best-effort");
-  if (o.asynchronous) list.emplace_back("--asynchronous");
-  if (o.listener) list.emplace_back("--listener");
-  return list;
+  Call call;
+  call["echo"] = {{"way", o.way},
+                  {"bytes", o.bytes},
+                  {"domain", o.domain},
+                  {"reliable", o.reliable},
+                  {"asynchronous", o.asynchronous},
+                  {"listener", o.listener}};
+  return {this_program(), call.dump()};
 }
 
 /// Both ends of a way: the other one in a process of its own, or in a thread of this.
@@ -164,6 +163,15 @@ void draw(Report& report) {
   }
 }
 
+LinkOptions link_of(const Call& call) {
+  return {.way = call.at("way"),
+          .bytes = call.at("bytes"),
+          .domain = call.at("domain"),
+          .reliable = call.at("reliable"),
+          .asynchronous = call.at("asynchronous"),
+          .listener = call.at("listener")};
+}
+
 int run_echo(const LinkOptions& options) {
   for (const int number : {SIGINT, SIGTERM}) signal(number, [](int) { g_stopped = 1; });
   echo(options, nullptr, [] { return g_stopped != 0; });
@@ -182,36 +190,11 @@ int run(Report& report, const std::string& part) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("The middleware alone, by way and size; and setpoints beside large maps.",
-               "goshawk bench dds");
-  LinkOptions link;
-  Options options;
-  bool is_echo = false, best_effort = false;
-  std::string part = "all", roles;
-  app.add_flag("--json", options.json, "one JSON object on standard output");
-  app.add_flag("--quick", options.quick, "less of everything: ends within 40 s");
-  app.add_option("--plots", options.plots, "folder for pictures and the report as JSON");
-  app.add_option("--part", part, "what to measure")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"all", "ways", "hand_over", "maps"}));
-  for (const auto& [name, value] :
-       {std::pair{"--echo", &is_echo}, std::pair{"--best-effort", &best_effort},
-        std::pair{"--asynchronous", &link.asynchronous}, std::pair{"--listener", &link.listener}}) {
-    app.add_flag(name, *value)->group("");
-  }
-  app.add_option("--way", link.way)->group("");
-  app.add_option("--bytes", link.bytes)->group("");
-  app.add_option("--domain", link.domain)->group("");
-  app.add_option("--roles", roles)->group("");
-  CLI11_PARSE(app, argc, argv);
-  link.reliable = !best_effort;
-  try {
-    if (is_echo) return run_echo(link);
-    if (!roles.empty()) return run_roles(roles);
-    Report report("dds", options);
-    return run(report, part);
-  } catch (const std::exception& e) {
-    std::fprintf(stderr, "goshawk bench dds: %s\n", e.what());
-    return 1;
-  }
+  return bench_call(argc, argv, "dds", [](const Call& call) {
+    // The other end of a way, or other processes of a measurement: children of this program.
+    if (call.contains("echo")) return run_echo(link_of(call["echo"]));
+    if (call.contains("roles")) return run_roles(call["roles"]);
+    Report report("dds", Options::of(call));
+    return run(report, call.at("part"));
+  });
 }

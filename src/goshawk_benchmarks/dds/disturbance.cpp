@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "common/call.hpp"
 #include "common/child.hpp"
 #include "common/measure.hpp"
 #include "goshawk/conversions/geometry.hpp"
@@ -159,8 +160,10 @@ Sample measure(const Arrangement& arrangement, bool with_maps, double settle_s, 
   for (const auto& other : arrangement.others) {
     const std::string roles = without_maps(other, with_maps);
     if (roles.empty()) continue;
+    Call call;
+    call["roles"] = roles;
     children.push_back(std::make_unique<Child>(
-        std::vector<std::string>{this_program(), "--roles", roles}, domain));
+        std::vector<std::string>{this_program(), call.dump()}, domain));
   }
   for (auto& node : here) node->start();
   wait_for(reader, kMet, kMeet_s);

@@ -2,12 +2,12 @@
 // long does a problem take?
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "common/call.hpp"
 #include "common/measure.hpp"
 #include "goshawk/path_search/planner.hpp"
 #include "search/warframe_files.hpp"
@@ -18,11 +18,11 @@ namespace {
 using Json = nlohmann::ordered_json;
 using worlds::Problem;
 
-struct Options {
+struct ScenarioOptions {
   std::string map;
   std::string scenario;
   int limit = 0;
-  std::vector<std::string> planners = {"jastar", "astar"};
+  std::vector<std::string> planners;
   bool json = false;
 };
 
@@ -70,17 +70,10 @@ Result<Json> run_planner(const std::string& name, const BitGrid& map,
 }
 
 int fail_with(const Error& error, bool json) {
-  if (json) {
-    const Json object{
-        {"ok", false}, {"code", std::string(to_string(error.code))}, {"message", error.message}};
-    std::printf("%s\n", object.dump(1, ' ', false, Json::error_handler_t::replace).c_str());
-  } else {
-    std::fprintf(stderr, "goshawk bench scenario: %s\n", error.message.c_str());
-  }
-  return 1;
+  return report_failure("scenario", json, error);
 }
 
-int run(const Options& o) {
+int run(const ScenarioOptions& o) {
   const auto map = worlds::read_voxel_map(o.map);
   if (!map) return fail_with(map.error(), o.json);
   auto problems = worlds::read_scenario(o.scenario);
@@ -117,18 +110,12 @@ int run(const Options& o) {
 }  // namespace goshawk::bench
 
 int main(int argc, char** argv) {
-  goshawk::bench::Options o;
-  CLI::App app("Public voxel problems: lengths against the published ones, and times.",
-               "goshawk bench scenario");
-  app.add_option("map", o.map, "MAP.3dmap")->required();
-  app.add_option("scenario", o.scenario, "SCEN.3dscen")->required();
-  app.add_option("--limit", o.limit, "only the first N problems")->check(CLI::PositiveNumber);
-  app.add_option("--planner", o.planners, "which, one or several")->capture_default_str();
-  app.add_flag("--json", o.json, "one JSON object on standard output");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? 0 : 2;
-  }
-  return goshawk::bench::run(o);
+  using namespace goshawk::bench;
+  return bench_call(argc, argv, "scenario", [](const Call& call) {
+    return run({.map = call.at("map"),
+                .scenario = call.at("scenario"),
+                .limit = call.at("limit"),
+                .planners = call.at("planners"),
+                .json = call.at("json")});
+  });
 }

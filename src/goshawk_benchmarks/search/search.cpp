@@ -277,7 +277,5 @@ void run(Report& report) {
 }  // namespace goshawk::bench
 
 int main(int argc, char** argv) {
-  return goshawk::bench::bench_main(argc, argv, "search",
-                                    "Grid searches beside a plain A*: time, nodes, length.",
-                                    goshawk::bench::run);
+  return goshawk::bench::bench_main(argc, argv, "search", goshawk::bench::run);
 }

@@ -1,10 +1,9 @@
-// bench stage STAGE --input RECORDING: feeds a stage with recorded inputs over DDS, ours in a
+// goshawk bench stage: feeds a stage with recorded inputs over DDS, ours in a
 // process, ours in this one, and another one's, and tells computing from the wire.
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
+#include <optional>
 
 #include "common/child.hpp"
 #include "common/measure.hpp"
@@ -68,10 +67,7 @@ void draw(Report& report, const std::string& stage) {
 
 int run(FeedOptions feed_options, const std::string& against, const Options& options) {
   auto reader = recording::Reader::open(feed_options.input);
-  if (!reader) {
-    std::fprintf(stderr, "goshawk bench stage: %s\n", reader.error().message.c_str());
-    return 1;
-  }
+  if (!reader) return report_failure("stage", options.json, reader.error());
   const std::string& stage = feed_options.stage;
   const auto folder = std::filesystem::path(this_program()).parent_path();
   std::string ours = "'" + (folder / "../../bin/goshawk_container").string() + "' " + stage;
@@ -81,55 +77,37 @@ int run(FeedOptions feed_options, const std::string& against, const Options& opt
   if (!against.empty()) implementations.emplace_back(against, against);
   Report report("stage", options);
   auto curves = nlohmann::ordered_json::array();
-  std::string failure;
+  std::optional<Error> failure;
   for (const auto& [name, command] : implementations) {
     report.progress(name);
     const auto samples = feed(feed_options, command, *reader);
     if (!samples) {
-      failure = samples.error().message;
+      failure = samples.error();
       break;
     }
     add_rows(report, curves, name, *samples);
   }
   report.note("curves", curves);
   draw(report, stage);
+  if (!failure) return report.finish();
   // What was measured before is worth its time.
-  const int status = curves.empty() ? 1 : report.finish();
-  if (failure.empty()) return status;
-  std::fprintf(stderr, "goshawk bench stage: %s\n", failure.c_str());
-  return 1;
+  if (curves.empty()) return report_failure("stage", options.json, *failure);
+  report.finish();
+  return report_failure("stage", false, *failure);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app(
-      "A stage fed from a recording, over DDS and in one process: computing, transport, loss.",
-      "goshawk bench stage");
-  FeedOptions feed_options;
-  Options options;
-  std::string against;
-  app.add_option("stage", feed_options.stage)->required()->check(CLI::IsMember(fed_stages()));
-  app.add_option("--input", feed_options.input, "an MCAP recording with the stage's inputs")
-      ->required();
-  app.add_option("--against", against, "command of another implementation, beside ours");
-  app.add_option("-n,--count", feed_options.count, "requests")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 1'000'000));
-  app.add_option("--rate", feed_options.rate_hz,
-                 "[Hz] whether answered or not; 0: the next when the last is answered")
-      ->capture_default_str()
-      ->check(CLI::Range(0.0, 1e5));
-  app.add_option("--plots", options.plots, "folder for pictures and the report as JSON");
-  app.add_flag("--quick", options.quick, "less of everything");
-  app.add_flag("--json", options.json, "one JSON object");
-  CLI11_PARSE(app, argc, argv);
-  if (options.quick) feed_options.count = std::min(feed_options.count, 50);
-  try {
+  return bench_call(argc, argv, "stage", [](const Call& call) {
+    const Options options = Options::of(call);
+    FeedOptions feed_options;
+    feed_options.stage = call.at("stage");
+    feed_options.input = call.at("input");
+    feed_options.count = call.at("count");
+    feed_options.rate_hz = call.at("rate_hz");
+    if (options.quick) feed_options.count = std::min(feed_options.count, 50);
     feed_options.domain = goshawk::runtime::hold_private_domain();
-    return run(feed_options, against, options);
-  } catch (const std::exception& e) {
-    std::fprintf(stderr, "goshawk bench stage: %s\n", e.what());
-    return 1;
-  }
+    return run(feed_options, call.at("against"), options);
+  });
 }

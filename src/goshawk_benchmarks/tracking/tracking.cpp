@@ -235,9 +235,5 @@ void run(Report& report) {
 }  // namespace goshawk::bench
 
 int main(int argc, char** argv) {
-  return goshawk::bench::bench_main(
-      argc, argv, "tracking",
-      "Planned flights through the thesis' worlds in closed loop: both controllers, four "
-      "weathers, both plants.",
-      goshawk::bench::run);
+  return goshawk::bench::bench_main(argc, argv, "tracking", goshawk::bench::run);
 }

@@ -11,8 +11,5 @@ void run(goshawk::bench::Report& report) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return goshawk::bench::bench_main(
-      argc, argv, "trajectory",
-      "Planners of the thesis' Table 3 and ours: durations, speeds, safety, time of each stage.",
-      run);
+  return goshawk::bench::bench_main(argc, argv, "trajectory", run);
 }

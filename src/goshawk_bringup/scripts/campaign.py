@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Many random missions, several at once, each judged by the second opinion: goshawk campaign.
+"""goshawk campaign: many random missions, several at once, each judged by the second opinion.
 
 A mission is a made world and a tour of random reachable goals in it, flown in a DDS domain of its
 own. Everything about mission k follows from --seed and k, so that any one can be flown again.
@@ -20,7 +20,7 @@ import subprocess
 import sys
 import threading
 
-DONE, NOT_DONE, WRONG_CALL = 0, 1, 2
+DONE, NOT_DONE = 0, 1
 MISSION_TIMEOUT_S = 600.0
 TRIES = 3
 GRAVITY_M_S2, AIR_KG_M3 = 9.81, 1.2
@@ -223,77 +223,49 @@ def run(options):
     return sorted(rows, key=lambda r: r["mission"]), flyer.stopping
 
 
-def numbers(least, most):
-    def parse(value):
-        parsed = [float(word) for word in value.split(",")]
-        if not all(least <= number <= most for number in parsed):
-            raise argparse.ArgumentTypeError(f"'{value}': numbers from {least:g} to {most:g} and "
-                                             "commas are meant")
-        return parsed
-    return parse
-
-
-def kinds(value):
-    known = {"boxes", "forest", "office", "noise"}
-    words = value.split(",")
-    if not known.issuperset(words):
-        raise argparse.ArgumentTypeError(f"'{value}': of {', '.join(sorted(known))}, with commas")
-    return words
-
-
-def count(value):
-    number = int(value)
-    if number < 1:
-        raise argparse.ArgumentTypeError(f"'{value}': 1 or more is meant")
-    return number
-
-
-def parse_options():
-    parser = argparse.ArgumentParser(
-        prog="goshawk campaign", description="Fly many random missions, several at once, each "
-        "judged by the second opinion.\nFlown again into the same folder, it goes on.",
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-        epilog="examples:\n  goshawk campaign --missions 50 --goals 3 --output campaign\n"
-        "  goshawk campaign --kinds forest,office --densities 0.1,0.2,0.3 --wind 0,2")
-    add = parser.add_argument
-    add("--missions", type=count, default=20, help="worlds (default 20)")
-    add("--goals", type=count, default=5, help="flights in each world (default 5)")
-    add("--seed", type=int, default=1, help="of everything random (default 1)")
-    add("--kinds", type=kinds, default=["boxes", "forest", "office"], help="boxes,forest,...")
-    add("--densities", type=numbers(0, 0.95), default=[0.1, 0.2, 0.3], help="0.1,0.2,...")
-    add("--wind", type=numbers(0, 15), default=[0.0, 1.5, 3.0], help="[m/s] 0,1.5,...")
-    add("--noise", type=numbers(0, 1), default=[0.0], help="[m] of the odometry: 0,0.005,...")
-    add("--size", default="10,10,4", help="[m] x,y,z of the worlds (default 10,10,4)")
-    add("--jobs", type=count, default=2, help="missions at once (default 2)")
-    add("--launch", default="flight_lock_step", help="launch file (default flight_lock_step, "
-        "where missions repeat bit for bit; flight for a process each)")
-    add("-p", dest="parameters", action="append", metavar="NODE:NAME:=VALUE", help="parameter of a "
-        "stage; may repeat (default in lock step: simulator:speed:=0, as fast as it goes)")
-    add("--output", type=pathlib.Path, default=pathlib.Path("campaign"), help="folder")
-    add("--json", action="store_true", help="print one JSON object")
-    add("--prefix", required=True, help=argparse.SUPPRESS)
-    options = parser.parse_args()
-    if options.parameters is None:
-        in_lock_step = options.launch == "flight_lock_step"
-        options.parameters = ["simulator:speed:=0"] if in_lock_step else []
+def read_options():
+    """One JSON object, which goshawk_cli writes (verbs/campaign.cpp)."""
+    options = argparse.Namespace(**json.loads(sys.argv[1]))
+    options.output = pathlib.Path(options.output)
     return options
 
 
+def fail(options, code, message):
+    if options.json:
+        print(json.dumps({"ok": False, "code": code, "message": message}))
+    else:
+        print(f"goshawk campaign: {code}: {message}", file=sys.stderr)
+    return NOT_DONE
+
+
+def outcome_of(rows, interrupted):
+    """@return code and sentence of a whole campaign"""
+    touched = [r["mission"] for r in rows if r["verdict"] == "touched"]
+    if touched:
+        return "collision", f"missions {touched} touched something"
+    if interrupted:
+        return "cancelled", "interrupted; the same call continues"
+    if not any(r["legs"] for r in rows):
+        return rows[0]["code"], f"nothing was flown: {rows[0]['message']}"
+    return "ok", ""
+
+
 def main():
-    options = parse_options()
+    options = read_options()
     try:
         options.output.mkdir(parents=True, exist_ok=True)
         rows, interrupted = run(options)
     except OSError as error:
-        print(f"goshawk campaign: io_failed: {error.filename}: {error.strerror}", file=sys.stderr)
-        return NOT_DONE
-    done = (not interrupted and any(r["legs"] for r in rows) and
-            not any(r["verdict"] == "touched" for r in rows))
+        return fail(options, "io_failed", f"{error.filename}: {error.strerror}")
+    code, message = outcome_of(rows, interrupted)
     if options.json:
-        print(json.dumps({"ok": done, **summary(rows), "folder": str(options.output)}))
+        print(json.dumps({"ok": code == "ok", "code": code, "message": message, **summary(rows),
+                          "folder": str(options.output)}))
     else:
         print_table(rows)
-    return DONE if done else NOT_DONE
+    if code == "ok":
+        return DONE
+    return NOT_DONE if options.json else fail(options, code, message)
 
 
 if __name__ == "__main__":

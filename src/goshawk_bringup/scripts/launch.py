@@ -1,362 +1,245 @@
 #!/usr/bin/python3
-"""goshawk launch FILE.yaml: starts what a launch file lists under supervisord, until Ctrl-C.
+"""goshawk launch: starts what a launch file lists under supervisord, until Ctrl-C.
 
-A launch file (docs/launch.md):
-
-    namespace: /uav1            # optional
-    domain: 5                   # optional; else ROS_DOMAIN_ID
-    container: false            # true: all components in one process
-    params_files: [my.yaml]     # optional, beside the launch file or absolute
-    stages:
-      - component: path_search  # one of the installed components ...
-        node: path_search       # optional, its node's name
-        params: {planner: astar}
-        remap: {path: my_path}
-        realtime: 10            # optional: priority 1 to 99, where the system permits it
-      - command: [./my_search]  # ... or a program of your own
-        name: my_search
+Its one argument is a JSON object of options, which goshawk_cli writes (verbs/launch.cpp).
 """
 
-import argparse
-import ctypes
-import difflib
-import http.client
 import json
 import os
 import signal
 import subprocess
 import sys
-import tempfile
 import time
-import xmlrpc.client
 
-import yaml
-from supervisor.xmlrpc import SupervisorTransport
+import launch_file
+import stage_names
+import supervision
+from launch_file import WrongCall
 
 DONE, NOT_DONE, WRONG_CALL = 0, 1, 2
-FILE_KEYS = {"namespace", "domain", "container", "params_files", "stages"}
-STAGE_KEYS = {"component", "node", "params", "remap", "command", "name", "realtime"}
-RETRIES = 5
+RETRIES = 5     # starts after the first before a launch that begins gives up
+PERIOD_S = 0.05
 
 
-class WrongCall(Exception):
-    pass
+class Failure(Exception):
+    def __init__(self, code, message, status=NOT_DONE, stage=""):
+        super().__init__(message)
+        self.code, self.status, self.stage = code, status, stage
 
 
-def nearest(word, known):
-    match = difflib.get_close_matches(str(word), sorted(known), 1)
-    return f"; did you mean {match[0]}?" if match else ""
+class Voice:
+    """Events on standard output: lines for people, or objects. Who reads them may go away: the
+    flight does not end because of that."""
 
-
-def check_keys(mapping, known, where):
-    if not isinstance(mapping, dict):
-        raise WrongCall(f"{where} is not a map of names to values")
-    faults = [f"{where} has no key '{k}'{nearest(k, known)}" for k in mapping if k not in known]
-    if faults:
-        raise WrongCall("\n  ".join(faults))
-
-
-def read_launch_file(path):
-    try:
-        with open(path, encoding="utf-8") as file:
-            content = yaml.safe_load(file)
-    except OSError as error:
-        raise WrongCall(f"{path} cannot be read: {error.strerror}") from error
-    except (yaml.YAMLError, UnicodeDecodeError) as error:
-        raise WrongCall(f"{path} is not valid YAML: {error}") from error
-    check_keys(content, FILE_KEYS, path)
-    if not isinstance(content.get("params_files", []), list):
-        raise WrongCall(f"{path}: params_files is not a list of files but"
-                        f" {content['params_files']!r}: write params_files: [my.yaml]")
-    stages = content.get("stages")
-    if not isinstance(stages, list) or not stages:
-        raise WrongCall(f"{path} lists no stages: write stages: [{{component: map_server}}, ...]")
-    for index, stage in enumerate(stages):
-        where = f"{path}, stage {index + 1}"
-        check_keys(stage, STAGE_KEYS, where)
-        if ("component" in stage) == ("command" in stage):
-            raise WrongCall(f"{where} needs either a component or a command")
-        if "command" in stage and not (isinstance(stage["command"], list) and stage["command"]):
-            raise WrongCall(f"{where}: command is not a list, as in [./my_search, --fast]")
-        for key in ("params", "remap"):
-            if not isinstance(stage.get(key, {}), dict):
-                raise WrongCall(f"{where}: {key} is not a map of names to values")
-        priority = stage.get("realtime", 1)
-        if not isinstance(priority, int) or not 1 <= priority <= 99:
-            raise WrongCall(f"{where}: realtime is {priority!r}: a priority from 1 to 99 is meant")
-    return content
-
-
-def realtime_is_permitted():
-    """Whether this user may give processes real-time priority: tried on this one, and undone."""
-    before = os.sched_getscheduler(0), os.sched_getparam(0)
-    try:
-        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(1))
-    except OSError:
-        return False
-    os.sched_setscheduler(0, *before)
-    return True
-
-
-def scalar(value):
-    return str(value).lower() if isinstance(value, bool) else str(value)
-
-
-def with_priority(stage, command):
-    if "realtime" not in stage or not realtime_is_permitted():
-        return command
-    return ["/usr/bin/chrt", "--fifo", str(stage["realtime"]), *command]
-
-
-class Plan:
-    """What to start: names, command lines, environment."""
-
-    def __init__(self, content, path, prefix, extra):
-        self.folder = os.path.dirname(os.path.abspath(path))
-        self.container = os.path.join(prefix, "bin", "goshawk_container")
-        self.namespace = content.get("namespace", "/")
-        self.extra = extra
-        self.params_files = [self.beside(f) for f in content.get("params_files", [])]
-        components = [s for s in content["stages"] if "component" in s]
-        commands = [s for s in content["stages"] if "command" in s]
-        self.programs = {}
-        if content.get("container") and components:
-            self.add("container", self.component_command(components))
-        else:
-            for stage in components:
-                self.add(stage.get("node", stage["component"]),
-                         with_priority(stage, self.component_command([stage])))
-        for stage in commands:
-            name = stage.get("name", os.path.basename(stage["command"][0]))
-            first = stage["command"][0]
-            if "/" in first:
-                first = self.beside(first)
-            self.add(name, with_priority(stage, [first, *map(scalar, stage["command"][1:])]))
-
-    def beside(self, path):
-        return os.path.normpath(os.path.join(self.folder, path))
-
-    def add(self, name, command):
-        if name in self.programs:
-            raise WrongCall(f"two stages are named {name}: give one of them another node or name")
-        self.programs[name] = command
-
-    def component_command(self, stages):
-        nodes = [s.get("node", s["component"]) for s in stages]
-        command = [self.container] + [f"{s['component']}:{n}" for s, n in zip(stages, nodes)]
-        command += ["--ros-args", "-r", f"__ns:={self.namespace}"]
-        for file in self.params_files:
-            command += ["--params-file", file]
-        for stage, node in zip(stages, nodes):
-            for key, value in stage.get("params", {}).items():
-                command += ["-p", f"{node}:{key}:={scalar(value)}"]
-            for source, target in stage.get("remap", {}).items():
-                command += ["-r", f"{node}:{source}:={target}"]
-        # What the caller adds goes to every component; parameters name their node themselves.
-        return command + self.extra
-
-
-def quoted(argument):
-    """supervisord splits like a shell and expands %(x)s."""
-    return "'" + argument.replace("'", "'\\''").replace("%", "%%") + "'"
-
-
-def supervisor_configuration(plan, logs, socket):
-    lines = ["[unix_http_server]", f"file={socket}", "[supervisord]", "nodaemon=true",
-             f"logfile={logs}/supervisord.log", f"pidfile={logs}/supervisord.pid",
-             f"childlogdir={logs}", "loglevel=info",
-             "[rpcinterface:supervisor]",
-             "supervisor.rpcinterface_factory="
-             "supervisor.rpcinterface:make_main_rpcinterface"]
-    if os.geteuid() == 0:
-        lines.insert(4, "user=root")
-    # One group: supervisord stops groups one after the other, a second or two for each.
-    lines += ["[group:stages]", "programs=" + ",".join(plan.programs)]
-    for name, command in plan.programs.items():
-        lines += [f"[program:{name}]", "command=" + " ".join(quoted(a) for a in command),
-                  "autostart=true", "autorestart=true", "startsecs=1", f"startretries={RETRIES}",
-                  "stopsignal=INT", "stopwaitsecs=5", "redirect_stderr=true",
-                  f"stdout_logfile={logs}/{name}.log", "stdout_logfile_maxbytes=20MB",
-                  "stdout_logfile_backups=1"]
-    return "\n".join(lines) + "\n"
-
-
-def stop_with_parent(parent=0):
-    """SIGTERM for this process when its parent ends, however it ends.
-
-    @param parent its process id: it may have ended before this process could ask for that"""
-    pr_set_pdeathsig = 1
-    ctypes.CDLL(None).prctl(pr_set_pdeathsig, signal.SIGTERM)
-    if parent and os.getppid() != parent:
-        os.kill(os.getpid(), signal.SIGTERM)
-
-
-class Launch:
-    def __init__(self, plan, logs, as_json):
-        self.plan = plan
-        self.logs = logs
+    def __init__(self, as_json):
         self.as_json = as_json
-        self.stopping = False
-        # A socket's path may have 108 bytes at the most, so it has a short folder of its own.
-        self.folder = tempfile.mkdtemp(prefix="goshawk-")
-        self.socket = os.path.join(self.folder, "s")
-        self.states = {}
-        self.starts = {}
 
-    def say(self, event, stage="", text=""):
+    def say(self, event, stage="", text="", **more):
         if self.as_json:
-            line = json.dumps({"event": event, "stage": stage, "message": text})
+            self.write(json.dumps({"event": event, "stage": stage, "message": text, **more}))
         else:
-            line = f"[launch] {stage + ': ' if stage else ''}{text or event}"
+            self.write(f"[launch] {stage + ': ' if stage else ''}{text or event}")
+
+    def fail(self, failure):
+        if self.as_json:
+            self.say("failed", failure.stage, str(failure), ok=False, code=failure.code)
+        else:
+            of = f"{failure.stage}: " if failure.stage else ""
+            print(f"goshawk launch: {failure.code}: {of}{failure}", file=sys.stderr, flush=True)
+        return failure.status
+
+    def write(self, line):
         try:
             print(line, flush=True)
         except BrokenPipeError:
-            self.stopping = True
+            sys.stdout = open(os.devnull, "w", encoding="utf-8")
 
-    def run(self):
-        configuration = os.path.join(self.folder, "supervisord.conf")
-        with open(configuration, "w", encoding="utf-8") as file:
-            file.write(supervisor_configuration(self.plan, self.logs, self.socket))
-        own_pid = os.getpid()
-        supervisor = subprocess.Popen(
-            ["/usr/bin/python3", "/usr/bin/supervisord", "-n", "-c", configuration],
-            stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-            start_new_session=True, preexec_fn=lambda: stop_with_parent(own_pid))
-        self.say("starting", text=f"starting {', '.join(self.plan.programs)}; logs in {self.logs}")
-        status = DONE
+
+class Stage:
+    """What is known of one program's process."""
+
+    def __init__(self, program):
+        self.name, self.essential = program.name, program.essential
+        self.pid = None
+        self.how = ""           # how it ended last
+        self.fast_ends = 0      # since it last stayed up
+        self.has_run = False    # it stayed up once
+
+
+class Launch:
+    def __init__(self, programs, logs, voice):
+        self.logs, self.voice = logs, voice
+        self.stages = {p.name: Stage(p) for p in programs}
+        self.stopping = False
+        self.up = False  # every essential stage has run
+
+    def run(self, programs, descriptors):
+        supervisor = supervision.Supervisor(programs, self.logs, descriptors)
+        self.voice.say("starting", text=f"starting {', '.join(self.stages)}; logs in {self.logs}")
+        failure = None
         try:
-            status = self.watch(supervisor)
-        finally:
-            supervisor.terminate()
-            supervisor.wait()
-            for name in ("supervisord.conf", "s"):
-                try:
-                    os.unlink(os.path.join(self.folder, name))
-                except OSError:
-                    pass
-            os.rmdir(self.folder)
-            self.say("stopped", text="all stages stopped")
+            self.watch(supervisor)
+        except Failure as caught:
+            failure = caught
+        left = supervisor.stop()
+        if left and failure is None:
+            failure = Failure("io_failed", f"these processes do not end: {left}")
+        status = self.voice.fail(failure) if failure else DONE
+        if not left:
+            self.voice.say("stopped", text="all stages stopped")
         return status
 
     def watch(self, supervisor):
         while not self.stopping:
-            # A new one each time: after a failed call (the socket is not there yet) a transport
-            # never recovers.
-            server = xmlrpc.client.ServerProxy("http://127.0.0.1", transport=SupervisorTransport(
-                None, None, f"unix://{self.socket}"))
-            if supervisor.poll() is not None:
-                self.say("failed", text="supervisord ended: see supervisord.log")
-                return NOT_DONE
-            try:
-                processes = server.supervisor.getAllProcessInfo()
-            except (OSError, http.client.HTTPException, xmlrpc.client.Error):
-                processes = []
-            for info in processes:
-                status = self.judge(info)
-                if status != DONE:
-                    return status
-            time.sleep(0.1)
-        return DONE
+            how = supervisor.how_it_ended()
+            for event, match in supervisor.events():
+                getattr(self, f"on_{event}")(match.groupdict())
+            if how:
+                raise Failure("io_failed", f"supervisord ended ({how}), and all stages with it; its "
+                              f"log: {self.logs}/supervisord.log")
+            time.sleep(PERIOD_S)
 
-    def judge(self, info):
-        name, state, start = info["name"], info["statename"], info["start"]
-        before = self.states.get(name)
-        self.states[name] = state
-        restarted = name in self.starts and self.starts[name] != start
-        self.starts[name] = start
-        if restarted and state in ("STARTING", "RUNNING", "BACKOFF"):
-            # How it ended is gone once it runs again; supervisord's log keeps it.
-            self.say("restarted", name, f"ended unexpectedly ({self.how_it_ended(name)}), "
-                                        "was started again")
-        if state == before:
-            return DONE
-        if state == "RUNNING":
-            self.say("running", name, "running")
-        # Status 2 is a wrong parameter or call: starting it again would only repeat it.
-        if state in ("BACKOFF", "EXITED") and self.how_it_ended(name) == "exit status 2":
-            self.say("failed", name, "cannot start:\n" + self.log_tail(name))
-            return WRONG_CALL
-        if state == "FATAL":
-            self.say("failed", name, f"gave up after {RETRIES} restarts:\n" + self.log_tail(name))
-            return NOT_DONE
-        return DONE
+    def on_spawned(self, match):
+        stage = self.stages[match["name"]]
+        before, stage.pid = stage.pid, int(match["pid"])
+        if before is not None:
+            self.voice.say("restarted", stage.name, f"ended unexpectedly ({stage.how}), was started "
+                           f"again as process {stage.pid}; its log: {self.log_of(stage)}")
 
-    def how_it_ended(self, name):
-        how = "unknown"
+    def on_running(self, match):
+        stage = self.stages[match["name"]]
+        stage.has_run, stage.fast_ends = True, 0
+        self.voice.say("running", stage.name, f"running as process {stage.pid}")
+        if not self.up and all(s.has_run for s in self.stages.values() if s.essential):
+            self.up = True
+            self.voice.say("up", text="every essential stage runs")
+
+    def on_exited(self, match):
+        stage = self.stages[match["name"]]
+        stage.how = match["how"]
+        stage.fast_ends += 1
+        self.judge(stage)
+
+    def on_fault(self, match):
+        # supervisord does not say of which program: before the launch is up, that is fatal.
+        if "too quickly" not in match["how"] and not self.up:
+            raise Failure("io_failed", match["how"])
+
+    def judge(self, stage):
+        """Before all is up, a stage that cannot start ends the launch. Later nothing does: the
+        tracker and the vehicle do not stop because something else has."""
+        tail = f"; the end of its log {self.log_of(stage)}:\n{self.tail_of(stage)}"
+        if not self.up and not stage.has_run:
+            # Status 2 is a wrong parameter or call: starting it again would only repeat it.
+            if stage.how == "exit status 2":
+                raise Failure("invalid_parameter", f"cannot start{tail}", WRONG_CALL, stage.name)
+            if stage.essential and stage.fast_ends > RETRIES:
+                raise Failure("stage_silent", f"gave up after {RETRIES} restarts ({stage.how}){tail}",
+                              stage=stage.name)
+        if stage.fast_ends == RETRIES + 1:
+            self.voice.say("failing", stage.name, f"ended {stage.fast_ends} times in a row "
+                           f"({stage.how}); it is started again, ever more rarely{tail}")
+
+    def log_of(self, stage):
+        return os.path.join(self.logs, f"{stage.name}.log")
+
+    def tail_of(self, stage, lines=15):
         try:
-            with open(os.path.join(self.logs, "supervisord.log"), encoding="utf-8") as file:
-                for line in file:
-                    if f"exited: {name} (" in line:
-                        how = line.split("(", 1)[1].split(";")[0].rstrip(")\n")
-        except OSError:
-            pass
-        return how
-
-    def log_tail(self, name, lines=15):
-        try:
-            with open(os.path.join(self.logs, f"{name}.log"), encoding="utf-8") as file:
+            with open(self.log_of(stage), encoding="utf-8", errors="replace") as file:
                 return "".join("    " + line for line in file.readlines()[-lines:]).rstrip()
         except OSError:
             return "    (it left no log)"
 
 
-class ListFiles(argparse.Action):
-    """--list: the installed launch files, one a line, and nothing else."""
-
-    def __call__(self, parser, options, *_):
-        folder = os.path.join(options.prefix, "share/goshawk/launch")
-        for name in sorted(os.listdir(folder)):
-            print(name.removesuffix(".yaml"))
-        parser.exit()
-
-
-def main():
-    arguments, extra = sys.argv[1:], []
-    if "--ros-args" in arguments:
-        at = arguments.index("--ros-args")
-        arguments, extra = arguments[:at], arguments[at + 1:]
-    parser = argparse.ArgumentParser(
-        prog="goshawk launch", description="Start what a launch file lists, supervised, until "
-        "Ctrl-C. Options behind --ros-args go to every\ncomponent, as in "
-        "--ros-args -p path_search:planner:=astar --params-file my.yaml",
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-        epilog="examples:\n  goshawk launch flight\n"
-        "  goshawk launch flight_container --log-dir logs --ros-args -p navigator:v_max_m_s:=1\n"
-        "  goshawk launch --list")
-    parser.add_argument("file", help="launch file, or the name of an installed one (flight)")
-    parser.add_argument("--log-dir", help="folder for the logs (default: a new one in /tmp)")
-    parser.add_argument("--json", action="store_true", help="one JSON object a line")
-    parser.add_argument("--prefix", required=True, help=argparse.SUPPRESS)
-    parser.add_argument("--list", action=ListFiles, nargs=0,
-                        help="print the names of the installed launch files, and end")
-    parser.add_argument("--stop-with-parent", action="store_true",
-                        help="stop as on Ctrl-C when the process that started this one ends")
-    parser.add_argument("--parent", type=int, default=0, help=argparse.SUPPRESS)
-    options = parser.parse_args(arguments)
-    path = options.file
-    if not os.path.isfile(path) and "/" not in path:
-        path = os.path.join(options.prefix, "share/goshawk/launch",
-                            path if path.endswith(".yaml") else path + ".yaml")
+def place(plan, options):
+    """Adds the map, and where the vehicle begins in it, to the parameters: what the caller asked
+    for, or a made world if nothing names a map."""
+    server, plant = plan.node_of({"map_server"}), plan.node_of(launch_file.PLANTS)
+    for option, node, kind in (("map", server, "map_server"), ("start", plant, "simulated vehicle")):
+        if options[option] and node is None:
+            raise WrongCall(f"--{option}: {plan.path} starts no {kind}")
+    if server is None:
+        if options["start"]:
+            for axis, value in zip("xyz", options["start"].split(",")):
+                plan.extra += ["-p", f"{plant}:start_{axis}_m:={value}"]
+        return None
+    stages = [s for s in plan.stages if "component" in s]
+    arguments = plan.ros_args(stages)
+    named = any(a.startswith(f"{server}:map_file:=") for a in arguments)
+    if named and not options["map"] and not options["start"]:
+        return None
+    command = [os.path.join(options["prefix"], "bin/goshawk"), "place", "--json",
+               "--map-server", server, "--world", os.path.join(options["log_dir"], "world.bt")]
+    for option, value in (("--plant", plant), ("--map", options["map"]),
+                          ("--start", options["start"])):
+        if value:
+            command.append(f"{option}={value}")
+    asked = subprocess.run([*command, "--ros-args", *arguments], text=True,
+                           stdin=subprocess.DEVNULL, stdout=subprocess.PIPE)
     try:
-        content = read_launch_file(path)
-        plan = Plan(content, path, options.prefix, extra)
-    except WrongCall as fault:
-        print(f"goshawk launch: invalid_parameter: {fault}", file=sys.stderr)
-        return WRONG_CALL
-    if "domain" in content:
-        os.environ["ROS_DOMAIN_ID"] = str(content["domain"])
-    logs = os.path.abspath(options.log_dir or tempfile.mkdtemp(prefix="goshawk-logs-"))
-    os.makedirs(logs, exist_ok=True)
-    launch = Launch(plan, logs, options.json)
+        answer = json.loads(asked.stdout)
+    except ValueError:
+        raise Failure("io_failed", f"the map could not be prepared: {asked.stdout}") from None
+    if not answer["ok"]:
+        raise Failure(answer["code"], answer["message"], asked.returncode)
+    for name, value in answer["parameters"].items():
+        plan.extra += ["-p", f"{name}:={value}"]
+    return answer["message"]
+
+
+def domain_of(content):
+    domain = content.get("domain", os.environ.get("ROS_DOMAIN_ID") or 0)
+    try:
+        number = -1 if isinstance(domain, bool) else int(domain)
+    except (TypeError, ValueError):
+        number = -1
+    if not 0 <= number <= 232:
+        raise WrongCall(f"domain {domain!r} is not a number from 0 to 232")
+    os.environ["ROS_DOMAIN_ID"] = str(number)
+    return number
+
+
+def launch(options, voice):
+    content = launch_file.read(options["file"])
+    domain = domain_of(content)
+    plan = launch_file.Plan(content, options["file"], options["prefix"], options["ros_args"])
+    nodes = [node for program in plan.programs() for node in program.nodes]
+    if options["check"]:
+        names = [program.name for program in plan.programs()]
+        voice.say("checked", text=f"{options['file']} starts {', '.join(names)}", ok=True, code="ok",
+                  stages=names)
+        return DONE
+    names = stage_names.StageNames(domain, nodes)
+    if options["stop_with_parent"]:
+        supervision.stop_with_parent(options["parent"])
+    os.makedirs(options["log_dir"], exist_ok=True)
+    said = place(plan, options)
+    if said:
+        voice.say("placed", text=said)
+    programs = plan.programs()
+    running = Launch(programs, os.path.abspath(options["log_dir"]), voice)
 
     def stop(*_):
-        launch.stopping = True
+        running.stopping = True
 
     signal.signal(signal.SIGINT, stop)
     signal.signal(signal.SIGTERM, stop)
-    if options.stop_with_parent:
-        stop_with_parent(options.parent)
-    return launch.run()
+    return running.run(programs, names.descriptors())
+
+
+def main():
+    options = json.loads(sys.argv[1])
+    voice = Voice(options["json"])
+    try:
+        return launch(options, voice)
+    except WrongCall as fault:
+        return voice.fail(Failure("invalid_parameter", str(fault), WRONG_CALL))
+    except stage_names.InUse as taken:
+        return voice.fail(Failure("io_failed", str(taken)))
+    except OSError as error:
+        return voice.fail(Failure("io_failed", str(error)))
+    except Failure as failure:
+        return voice.fail(failure)
 
 
 if __name__ == "__main__":

@@ -13,7 +13,7 @@ namespace {
 
 namespace msg = goshawk_msgs::msg;
 using testing::HasSubstr;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 
 Vec3 random_vector(Random& random) {
   return {random.uniform(-9, 9), random.uniform(-9, 9), random.uniform(-9, 9)};
@@ -98,12 +98,12 @@ TEST(PlanRequestMessage, IsRefusedInAnotherFrame) {
 
 TEST(PlanRequestMessage, IsCheckedAsARequest) {
   auto m = valid_request();
-  m.start().position().y(kNaN);
+  m.start().position().y(kNotANumber);
   EXPECT_EQ(from_msg(m).code(), ErrorCode::invalid_input);
   m = valid_request();
   m.deadline(-1.0);
   EXPECT_EQ(from_msg(m).code(), ErrorCode::invalid_input);
-  for (const double bad : {0.0, -1.0, kNaN, HUGE_VAL}) {
+  for (const double bad : {0.0, -1.0, kNotANumber, HUGE_VAL}) {
     m = valid_request();
     m.limits().a_max(bad);
     const auto result = from_msg(m);
@@ -128,7 +128,7 @@ TEST(PathMessage, GivesItsWaypointsIfTheyAreALine) {
   const auto waypoints = waypoints_of(m);
   ASSERT_TRUE(waypoints.ok());
   EXPECT_EQ(waypoints->back(), Vec3(4, 5, 6));
-  m.waypoints()[1].z(kNaN);
+  m.waypoints()[1].z(kNotANumber);
   EXPECT_EQ(waypoints_of(m).code(), ErrorCode::invalid_input);
   m.waypoints().resize(1);
   EXPECT_EQ(waypoints_of(m).code(), ErrorCode::invalid_input);
@@ -180,7 +180,7 @@ TEST(CorridorMessage, ThatMakesNoSenseDoesNotPassItsCheck) {
   m.polytopes()[0].normals()[0] = 2.0;
   EXPECT_EQ(from_msg(m)->check().code(), ErrorCode::invalid_input);
   m = valid_corridor();
-  m.polytopes()[1].offsets()[2] = kNaN;
+  m.polytopes()[1].offsets()[2] = kNotANumber;
   EXPECT_EQ(from_msg(m)->check().code(), ErrorCode::invalid_input);
   m = valid_corridor();
   m.header().frame_id("odom");
@@ -246,7 +246,7 @@ TEST(TrajectoryMessage, ThatMakesNoSenseIsRefused) {
     EXPECT_EQ(code([&](auto& m) { m.pieces()[0].polytope(polytope); }), ErrorCode::invalid_input);
   }
   EXPECT_EQ(code([](auto& m) { m.pieces().clear(); }), ErrorCode::invalid_input);
-  EXPECT_EQ(code([](auto& m) { m.polytopes()[0].offsets()[0] = kNaN; }), ErrorCode::invalid_input);
+  EXPECT_EQ(code([](auto& m) { m.polytopes()[0].offsets()[0] = kNotANumber; }), ErrorCode::invalid_input);
   EXPECT_EQ(code([](auto& m) { m.polytopes()[0].normals()[0] = 2.0; }), ErrorCode::invalid_input);
   EXPECT_EQ(code([](auto& m) { m.polytopes()[0].offsets().pop_back(); }), ErrorCode::invalid_input);
   EXPECT_EQ(code([](auto& m) { m.request().limits().norm(9); }), ErrorCode::invalid_limits);
@@ -329,7 +329,7 @@ TEST(CommitMessage, IsRefusedWithAStopPartThatDoesNotHold) {
   };
   EXPECT_EQ(code([](auto&) {}), ErrorCode::ok);
   EXPECT_EQ(code([](auto& m) { m.stop_after(4.1); }), ErrorCode::not_certified);
-  for (const double after_s : {0.0, -1.0, 8.5, kNaN}) {
+  for (const double after_s : {0.0, -1.0, 8.5, kNotANumber}) {
     EXPECT_EQ(code([&](auto& m) { m.stop_after(after_s); }), ErrorCode::invalid_input) << after_s;
   }
   EXPECT_EQ(code([](auto& m) { m.stop_pieces().clear(); }), ErrorCode::invalid_input);
@@ -352,7 +352,7 @@ TEST(CommitMessage, IsRefusedInAnotherFrameOrWithABrokenCurve) {
   m.nominal().yaw_points({1.0});
   EXPECT_EQ(from_msg(m).code(), ErrorCode::invalid_input);
   m = commit_of(trajectory_to(at(1), 10.0));
-  m.yaw(kNaN);
+  m.yaw(kNotANumber);
   EXPECT_EQ(from_msg(m).code(), ErrorCode::invalid_input);
 }
 

@@ -10,7 +10,7 @@
 #include <sstream>
 #include <thread>
 
-#include "doctor.hpp"
+#include "goshawk/introspection/doctor.hpp"
 
 namespace goshawk::introspection {
 namespace {

@@ -6,7 +6,7 @@
 #include <set>
 #include <sstream>
 
-#include "doctor.hpp"
+#include "goshawk/introspection/doctor.hpp"
 
 namespace goshawk::introspection {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <ctime>
 
-#include "doctor.hpp"
+#include "goshawk/introspection/doctor.hpp"
 
 namespace goshawk::introspection {
 namespace {

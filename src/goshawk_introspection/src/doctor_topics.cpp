@@ -2,7 +2,7 @@
 #include <map>
 #include <set>
 
-#include "doctor.hpp"
+#include "goshawk/introspection/doctor.hpp"
 #include "goshawk/runtime/version.hpp"
 
 namespace goshawk::introspection {

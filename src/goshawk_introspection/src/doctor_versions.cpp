@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "doctor.hpp"
+#include "goshawk/introspection/doctor.hpp"
 #include "goshawk/runtime/version.hpp"
 
 namespace goshawk::introspection {

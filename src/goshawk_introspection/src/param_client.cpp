@@ -1,4 +1,4 @@
-#include "param_client.hpp"
+#include "goshawk/introspection/param_client.hpp"
 
 #include <unistd.h>
 
@@ -37,10 +37,8 @@ ParameterRequest to_msg(const ParameterQuestion& question, std::int64_t now_ns) 
 
 Result<std::vector<LiveParameter>> from_msg(const ParameterAnswer& answer) {
   if (answer.code() != to_string(ErrorCode::ok)) {
-    for (const ErrorCode code : all_error_codes()) {
-      if (to_string(code) == answer.code()) return fail(code, answer.message());
-    }
-    return fail(ErrorCode::invalid_input, answer.code() + ": " + answer.message());
+    // A request that is not valid is a wrong call, whichever of the two codes the node gives it.
+    return fail(ErrorCode::invalid_parameter, answer.message());
   }
   std::vector<LiveParameter> list;
   for (const Parameter& p : answer.parameters()) {
@@ -51,16 +49,8 @@ Result<std::vector<LiveParameter>> from_msg(const ParameterAnswer& answer) {
   return list;
 }
 
-std::vector<std::string> nodes_of(const Session& session) {
-  std::vector<std::string> nodes;
-  for (const auto& participant : session.context().participants()) {
-    nodes.insert(nodes.end(), participant.nodes.begin(), participant.nodes.end());
-  }
-  return nodes;
-}
-
 Error nobody_answered(const Session& session, const std::string& node) {
-  const auto known = nodes_of(session);
+  const auto known = session.nodes();
   if (std::ranges::find(known, node) != known.end()) {
     return fail(ErrorCode::stage_silent,
                 node +
@@ -82,7 +72,7 @@ Error nobody_answered(const Session& session, const std::string& node) {
 class Absence {
  public:
   bool is_certain(const Session& session, const std::string& node) {
-    const auto known = nodes_of(session);
+    const auto known = session.nodes();
     const auto now = std::chrono::steady_clock::now();
     if (known.size() != seen_) changed_ = now;
     seen_ = known.size();

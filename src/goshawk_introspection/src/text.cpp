@@ -1,5 +1,6 @@
-#include "text.hpp"
+#include "goshawk/introspection/text.hpp"
 
+#include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
 
 #include <charconv>
@@ -102,7 +103,8 @@ Result<Json> parse_json_or_yaml(const std::string& text) {
   try {
     return from_yaml(YAML::Load(text), 0);
   } catch (const YAML::Exception& e) {
-    return fail(ErrorCode::invalid_input, "'" + text + "' is neither JSON nor YAML: " + e.what());
+    return fail(ErrorCode::invalid_input,
+                fmt::format("'{}' is neither JSON nor YAML: {}", text, e.what()));
   }
 }
 
@@ -118,7 +120,7 @@ std::string to_yaml(const Json& json) {
 
 void shorten_arrays(Json& json) {
   if (json.is_array() && json.size() > kShortArray) {
-    json = "<" + std::to_string(json.size()) + " elements>";
+    json = fmt::format("<{} elements>", json.size());
   } else if (json.is_structured()) {
     for (auto& element : json) shorten_arrays(element);
   }

@@ -1,7 +1,9 @@
-#include "topic_reader.hpp"
+#include "goshawk/introspection/topic_reader.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
-#include <iostream>
+#include <chrono>
 #include <set>
 
 namespace goshawk::introspection {
@@ -14,19 +16,17 @@ struct Found {
   runtime::Qos qos;
 };
 
-// A reader may ask for no more than every writer offers; where nobody writes yet, for least.
-Found choose(const std::vector<runtime::EndpointInfo>& endpoints) {
+// A reader may ask for no more than every writer offers; if nobody writes yet, for least.
+Found choose(const std::vector<runtime::EndpointInfo>& endpoints, const TopicListener& listener) {
   std::vector<runtime::EndpointInfo> writers;
-  std::set<std::string> types;
-  for (const auto& e : endpoints) {
-    if (e.writer) writers.push_back(e);
-  }
+  std::ranges::copy_if(endpoints, std::back_inserter(writers), &runtime::EndpointInfo::writer);
   const auto& relevant = writers.empty() ? endpoints : writers;
+  std::set<std::string> types;
   for (const auto& e : relevant) types.insert(e.type);
   Found found{relevant.front().type, runtime::Qos::best_effort(1000)};
   if (types.size() > 1) {
-    std::cerr << "goshawk: " << relevant.front().topic << " has " << types.size()
-              << " types; this reads " << found.type << std::endl;
+    listener.note(fmt::format("{} has {} types; this reads {}", relevant.front().topic,
+                              types.size(), found.type));
   }
   found.qos.reliable =
       !writers.empty() && std::ranges::all_of(writers, &runtime::EndpointInfo::reliable);
@@ -36,68 +36,90 @@ Found choose(const std::vector<runtime::EndpointInfo>& endpoints) {
   return found;
 }
 
-std::string text(double value) {
-  char buffer[32];
-  std::snprintf(buffer, sizeof buffer, "%g", value);
-  return buffer;
-}
+/// Messages of one topic as they come, until enough have come.
+class Follower {
+ public:
+  Follower(Session& session, const std::string& topic, const ReadOptions& options,
+           const TopicListener& listener)
+      : session_(session), topic_(topic), options_(options), listener_(listener) {}
+
+  Status follow(const Found& found) {
+    const auto type = runtime::raw_message_type(runtime::wire_type_name(found.type));
+    session_.node().subscribe_raw(
+        topic_, type, found.qos, [this](const void* data, const runtime::MessageInfo& info) {
+          take({*static_cast<const std::vector<unsigned char>*>(data), info.received_ns});
+        });
+    if (auto status = wait_for_first(); !status) return status;
+    last_ = Steady::now();
+    before_ = received_;
+    session_.node().every(1.0, [this] { tick(); });
+    return wait_for_rest();
+  }
+
+ private:
+  void take(const RawMessage& message) {
+    if (done_) return;
+    ++received_;
+    done_ = !listener_.message(message) || received_ == options_.count;
+  }
+
+  Status wait_for_first() {
+    const bool came = session_.wait_for(options_.timeout_s, [this] { return received_ > 0; });
+    if (came || Interruptible::interrupted()) return success();
+    const auto sentence =
+        fmt::format("no message came on {} within {:g} s", topic_, options_.timeout_s);
+    if (!options_.patient) {
+      return fail(ErrorCode::stage_silent, sentence + "; --timeout waits longer");
+    }
+    listener_.note(sentence + ": still waiting, Ctrl-C ends");
+    return success();
+  }
+
+  void tick() {
+    if (received_ > before_) last_ = Steady::now();
+    before_ = received_;
+    if (!done_) listener_.tick();
+  }
+
+  Status wait_for_rest() {
+    while (!done_ && !Interruptible::interrupted()) {
+      session_.wait_for(1.0, [this] { return done_; });
+      const std::chrono::duration<double> silent = Steady::now() - last_;
+      if (options_.count > 0 && !done_ && received_ == before_ &&
+          silent.count() > std::max(2.0, options_.timeout_s)) {
+        return fail(ErrorCode::stage_silent, fmt::format("only {} of {} messages came on {}",
+                                                         received_, options_.count, topic_));
+      }
+    }
+    return success();
+  }
+
+  Session& session_;
+  const std::string& topic_;
+  const ReadOptions& options_;
+  const TopicListener& listener_;
+  int received_ = 0;
+  int before_ = 0;  // received at the last tick
+  bool done_ = false;
+  Steady::time_point last_;  // when the last tick saw a new message
+};
 
 }  // namespace
 
-int read_topic(const CommonOptions& common, const ReadOptions& options,
-               const std::function<int(const std::string& type)>& begin,
-               const std::function<bool(const RawMessage&)>& message,
-               const std::function<void()>& tick) {
+Status read_topic(Session& session, const ReadOptions& options, const TopicListener& listener) {
   auto name = full_topic_name(options.topic);
-  if (!name) return say_wrong_call(name.error().message);
-  auto session = Session::open();
-  if (!session) return say_wrong_call(session.error().message);
-  auto& s = **session;
+  if (!name) return name.error();
   // Readers may be discovered first, but only writers tell what can be asked for.
   const auto written = [&] {
-    return std::ranges::any_of(s.endpoints_of(*name), &runtime::EndpointInfo::writer);
+    return std::ranges::any_of(session.endpoints_of(*name), &runtime::EndpointInfo::writer);
   };
-  if (!s.wait_for(common.timeout_s, written) && s.endpoints_of(*name).empty()) {
-    if (Interruptible::interrupted()) return 0;
-    return s.say_no_topic(*name, common.timeout_s);
+  if (!session.wait_for(options.timeout_s, written) && session.endpoints_of(*name).empty()) {
+    if (Interruptible::interrupted()) return success();
+    return session.no_topic(*name, options.timeout_s);
   }
-  const Found found = choose(s.endpoints_of(*name));
-  if (const int status = begin(found.type); status != 0) return status;
-
-  int received = 0;
-  bool done = false;
-  const auto type = runtime::raw_message_type(runtime::wire_type_name(found.type));
-  s.node().subscribe_raw(
-      *name, type, found.qos, [&](const void* data, const runtime::MessageInfo& info) {
-        if (done) return;
-        const auto& bytes = *static_cast<const std::vector<unsigned char>*>(data);
-        ++received;
-        done = !message({bytes, info.received_ns}) || received == options.count;
-      });
-  if (!s.wait_for(common.timeout_s, [&] { return received > 0; }) && received == 0 &&
-      !Interruptible::interrupted()) {
-    const std::string sentence =
-        "no message came on " + *name + " within " + text(common.timeout_s) + " s";
-    if (!options.patient) return say_nothing(sentence + "; --timeout waits longer");
-    std::cerr << "goshawk: " << sentence << ": still waiting, Ctrl-C ends" << std::endl;
-  }
-  int before = received;
-  auto last = Steady::now();
-  s.node().every(1.0, [&] {
-    if (received > before) last = Steady::now();
-    before = received;
-    if (!done) tick();
-  });
-  while (!done && !Interruptible::interrupted()) {
-    s.wait_for(1.0, [&] { return done; });
-    const std::chrono::duration<double> silent = Steady::now() - last;
-    if (options.count > 0 && !done && received == before &&
-        silent.count() > std::max(2.0, common.timeout_s)) {
-      return say_nothing("only " + std::to_string(received) + " of " +
-                         std::to_string(options.count) + " messages came on " + *name);
-    }
-  }
-  return 0;
+  const Found found = choose(session.endpoints_of(*name), listener);
+  if (auto status = listener.begin(found.type); !status) return status;
+  return Follower(session, *name, options, listener).follow(found);
 }
 
 }  // namespace goshawk::introspection

@@ -1,4 +1,4 @@
-#include "doctor.hpp"
+#include "goshawk/introspection/doctor.hpp"
 
 #include <gmock/gmock.h>
 

@@ -3,17 +3,19 @@
 #include <algorithm>
 #include <chrono>
 
+#include "goshawk/introspection/interruptible.hpp"
 #include "qos_profiles.hpp"
 #include "restamp.hpp"
-#include "verb.hpp"
 
 namespace goshawk::recording {
 namespace {
 
+using introspection::Interruptible;
+
 constexpr double kSlice_s = 0.05;   // how often a wait looks for Ctrl-C
 constexpr double kSettled_s = 0.7;  // nobody new for this long: all readers are found
 constexpr double kClockPeriod_s = 0.01;
-constexpr double kWord_s = 3.0;  // waiting silently for longer would puzzle
+constexpr double kWord_s = 3.0;  // a longer wait is explained
 // A recorder takes topic by topic what has come: within this time it may be in another order.
 constexpr std::uint64_t kDisorder_ns = 2'000'000'000;
 constexpr std::size_t kFragments_bytes = 60'000;  // larger messages arrive in parts
@@ -30,8 +32,12 @@ bool is_large(const std::string& type) {
 }  // namespace
 
 Player::Player(runtime::Node& node, Reader& reader, const std::set<std::uint16_t>& channels,
-               PlayerOptions options)
-    : node_(node), reader_(reader), options_(std::move(options)), channels_(channels) {
+               ReplayOptions options, Say say)
+    : node_(node),
+      reader_(reader),
+      options_(std::move(options)),
+      say_(std::move(say)),
+      channels_(channels) {
   for (const auto id : channels) {
     const Channel& channel = reader.channels().at(id);
     const std::string type = reader.schema_of(channel)->name;
@@ -53,7 +59,7 @@ Player::Player(runtime::Node& node, Reader& reader, const std::set<std::uint16_t
                                       runtime::raw_message_type(runtime::wire_type_name(kTurnType)),
                                       runtime::Qos::reliable_last());
   }
-  if (!options_.lock_step.empty() || !options_.plant.empty()) turns_.emplace(node);
+  if (!options_.lock_step.empty() || !options_.plant.empty()) turns_.emplace(node, say_);
   if (options_.clock) {
     clock_ =
         node.advertise_raw("/clock", runtime::raw_message_type("rosgraph_msgs::msg::dds_::Clock_"),
@@ -85,7 +91,7 @@ void Player::wait_for_turn_taker(const runtime::RawPublisher& turns, const std::
   bool said = false;
   while (!Interruptible::interrupted() && turns.matched() == 0) {
     if (!said && double(steady_ns() - begin) * 1e-9 > kWord_s) {
-      say("replay", "waits for " + node + " to run with lock_step: true");
+      say_("waits for " + node + " to run with lock_step: true");
       said = true;
     }
     node_.spin_some(kSlice_s);

@@ -6,30 +6,19 @@
 #include <vector>
 
 #include "goshawk/introspection/schema.hpp"
-#include "goshawk/recording/reader.hpp"
+#include "goshawk/recording_tools/replay.hpp"
 #include "goshawk/runtime/node.hpp"
 #include "turns.hpp"
 
 namespace goshawk::recording {
 
-struct PlayerOptions {
-  double rate = 1.0;
-  double start_offset_s = 0.0;           // from the first message of the recording
-  double wait_s = 3.0;                   // longest wait for readers to be found
-  bool clock = false;                    // publish /clock
-  bool restamp = false;                  // move stamps to now
-  std::string prefix;                    // before every topic
-  std::set<std::string> lock_step = {};  // full names of nodes that are given their recorded turns
-  std::string plant = {};                // full name of the node that led, where it is to follow
-};
-
 /// Publishes recorded messages as they were, at the times they came; in lock step, in the order in
 /// which they were published, without a pause, and no node does anything but in its turn.
 class Player {
  public:
-  /// @param channels that are played. @throws StartupFault where a topic cannot be written
+  /// @param options whose names are full. @throws StartupFault if a topic cannot be written
   Player(runtime::Node& node, Reader& reader, const std::set<std::uint16_t>& channels,
-         PlayerOptions options);
+         ReplayOptions options, Say say);
 
   /// Waits until those who read are found.
   void wait_for_readers();
@@ -70,7 +59,8 @@ class Player {
 
   runtime::Node& node_;
   Reader& reader_;
-  PlayerOptions options_;
+  ReplayOptions options_;
+  Say say_;
   std::map<std::uint16_t, Track> tracks_;  // by channel
   std::set<std::uint16_t> channels_;
   runtime::RawPublisher clock_;

@@ -1,14 +1,16 @@
-#include "print_messages.hpp"
-
 #include <zlib.h>
 
 #include <cstdio>
 
+#include <nlohmann/json.hpp>
+
 #include "goshawk/introspection/codec.hpp"
-#include "verb.hpp"
+#include "goshawk/recording_tools/replay.hpp"
 
 namespace goshawk::recording {
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 Json value_of(const std::string& type_name, View data) {
   const auto type = introspection::find_type(type_name);

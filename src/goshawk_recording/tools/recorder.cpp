@@ -1,10 +1,12 @@
 #include "recorder.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "goshawk/introspection/schema.hpp"
+#include "goshawk/introspection/session.hpp"
 #include "qos_profiles.hpp"
-#include "verb.hpp"
 
 namespace goshawk::recording {
 namespace {
@@ -28,8 +30,8 @@ Recorder::Recorder(runtime::Context& context, runtime::Node& node, Writer writer
 
 bool Recorder::wanted(const std::string& topic) const {
   if (!topic.starts_with('/')) return false;  // no topic of ROS: a service, or discovery's own
-  if (matches(options_.exclude, topic)) return false;
-  return options_.topics.empty() || matches(options_.topics, topic);
+  if (introspection::matches(options_.exclude, topic)) return false;
+  return options_.topics.empty() || introspection::matches(options_.topics, topic);
 }
 
 void Recorder::join() {
@@ -49,11 +51,13 @@ void Recorder::join() {
 // A reader is served only by writers that offer what it asks for, of its type.
 void Recorder::check_late(const Track& track, const runtime::EndpointInfo& writer) {
   if (writer.type != track.type) {
-    say_once(writer.topic + " is recorded as " + track.type + "; somebody writes " + writer.type +
-             " on it as well, which is not recorded");
+    say_once(fmt::format(
+        "{} is recorded as {}; another writer sends {} on it, which is not recorded", writer.topic,
+        track.type, writer.type));
   } else if (track.reliable > writer.reliable || track.transient_local > writer.transient_local) {
-    say_once("a writer of " + writer.topic +
-             " that came later offers less than those before: it is not recorded");
+    say_once(fmt::format(
+        "a writer of {} that came later offers less than those before: it is not recorded",
+        writer.topic));
   }
 }
 
@@ -62,8 +66,10 @@ std::uint16_t Recorder::schema(const std::string& type) {
   if (found != schemas_.end()) return found->second;
   const auto definition = introspection::ros_msg_definition(type);
   if (!definition) {
-    say_once("no definition of " + type +
-             " is known here: its messages are recorded, but others cannot look into them");
+    say_once(fmt::format(
+        "no definition of {} is known here: its messages are recorded, but other tools cannot "
+        "decode them",
+        type));
   }
   return schemas_[type] =
              writer_.add_schema(type, definition ? "ros2msg" : "", definition ? *definition : "");
@@ -114,7 +120,7 @@ Status Recorder::close() {
 }
 
 void Recorder::say_once(const std::string& sentence) {
-  if (said_.insert(sentence).second) say("record", sentence);
+  if (said_.insert(sentence).second) options_.say(sentence);
 }
 
 }  // namespace goshawk::recording

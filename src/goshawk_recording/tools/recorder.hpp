@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "goshawk/recording_tools/record.hpp"
 #include "goshawk/recording/writer.hpp"
 #include "goshawk/runtime/node.hpp"
 
@@ -13,7 +14,8 @@ namespace goshawk::recording {
 
 struct RecorderOptions {
   std::vector<std::string> topics;   // full names, or beginnings with '*'; none: all
-  std::vector<std::string> exclude;  // likewise
+  std::vector<std::string> exclude;  // the same
+  Say say;
 };
 
 /// Joins topics as their writers appear, and writes every message that comes.

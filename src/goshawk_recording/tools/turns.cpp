@@ -3,14 +3,15 @@
 #include <chrono>
 
 #include "goshawk/conversions/geometry.hpp"
+#include "goshawk/introspection/interruptible.hpp"
 #include "goshawk_msgs.h"
 #include "rosgraph_msgs.h"
-#include "verb.hpp"
 
 namespace goshawk::recording {
 namespace {
 
 using goshawk_msgs::msg::Turn;
+using introspection::Interruptible;
 using Clock = std::chrono::steady_clock;
 
 constexpr double kAskAgain_s = 0.5;  // a node that is asked twice does its turn once
@@ -23,7 +24,7 @@ std::string turn_of(const std::string& topic, const std::string& type) {
   return topic.substr(0, topic.size() - std::string(kTurnEnd).size());
 }
 
-TurnGiver::TurnGiver(runtime::Node& node) : node_(node) {
+TurnGiver::TurnGiver(runtime::Node& node, Say say) : node_(node), say_(std::move(say)) {
   node.subscribe<Turn>("/turn_done", runtime::Qos::reliable_last(100),
                        [this](const Turn& m, const runtime::MessageInfo&) {
                          who_ = m.node();
@@ -54,7 +55,7 @@ Status TurnGiver::give(const runtime::RawPublisher& turns, Bytes& turn,
   }
   number_ = 0;
   for (int asked = 0; !Interruptible::interrupted(); ++asked) {
-    if (asked == kAsksUntilWord) say("replay", follower + " does not answer: replay waits for it");
+    if (asked == kAsksUntilWord) say_(follower + " does not answer: replay waits for it");
     if (auto status = turns.publish_raw(&turn); !status) return status;
     const auto until = Clock::now() + std::chrono::duration<double>(kAskAgain_s);
     for (double left_s = kAskAgain_s; left_s > 0.0 && !Interruptible::interrupted();

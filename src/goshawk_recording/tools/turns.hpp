@@ -4,6 +4,7 @@
 #include <string>
 
 #include "goshawk/recording/format.hpp"
+#include "goshawk/recording_tools/record.hpp"
 #include "goshawk/runtime/node.hpp"
 
 namespace goshawk::recording {
@@ -19,7 +20,7 @@ std::string turn_of(const std::string& topic, const std::string& type);
 /// message is not published before the node has answered.
 class TurnGiver {
  public:
-  explicit TurnGiver(runtime::Node& node);
+  TurnGiver(runtime::Node& node, Say say);
 
   /// A turn of a node that led the recorded flight, and had none: what came in a step of /clock is
   /// done at the end of that step.
@@ -28,11 +29,12 @@ class TurnGiver {
                     const std::string& plant);
 
   /// @param turn bytes of a Turn. @param follower full name of its node
-  /// @return invalid_input where the bytes are no turn; success too where Ctrl-C came first
+  /// @return invalid_input where the bytes are no turn; success also if Ctrl-C came first
   Status give(const runtime::RawPublisher& turns, Bytes& turn, const std::string& follower);
 
  private:
   runtime::Node& node_;
+  Say say_;
   std::int64_t step_ns_ = 0;  // [ns] time of the step that is played, once there is one
   std::uint64_t plant_turn_ = 0;
   std::string who_;           // answered last, ...

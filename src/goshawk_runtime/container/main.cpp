@@ -1,10 +1,12 @@
-// goshawk_container COMPONENT[:NODE_NAME] ... [--ros-args ...]: one or many components in one
-// process, each with a node and a thread of its own.
+// goshawk_container [--json] COMPONENT[:NODE_NAME] ... [--ros-args ...]: one or many components in
+// one process, each with a node and a thread of its own. --json: a refusal is a JSON object.
 
+#include <fmt/format.h>
 #include <pthread.h>
 #include <signal.h>
+#include <unistd.h>
 
-#include <cstdio>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <thread>
@@ -23,9 +25,19 @@ struct Wanted {
   std::string node;
 };
 
+// After the signal to stop: a component that computes on and on does not outlive it by more.
+constexpr unsigned kLongestStop_s = 3;
+
+bool g_json = false;  // how a refusal is told
+
 int complain(const Error& error) {
-  std::fprintf(stderr, "goshawk_container: %s: %s\n", std::string(to_string(error.code)).c_str(),
-               error.message.c_str());
+  const std::string code(to_string(error.code));
+  if (g_json) {
+    const nlohmann::ordered_json object{{"ok", false}, {"code", code}, {"message", error.message}};
+    fmt::print("{}\n", object.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  } else {
+    fmt::print(stderr, "goshawk_container: {}: {}\n", code, error.message);
+  }
   return kWrongCall;
 }
 
@@ -35,7 +47,7 @@ Result<std::vector<Wanted>> wanted_components(const std::vector<std::string>& ar
   for (const auto& argument : arguments) {
     if (argument.starts_with("-")) {
       return fail(ErrorCode::invalid_input,
-                  "'" + argument + "' is no component; options stand behind --ros-args");
+                  fmt::format("'{}' is not a component; options stand behind --ros-args", argument));
     }
     const auto colon = argument.find(':');
     const std::string component = argument.substr(0, colon);
@@ -122,6 +134,7 @@ int run(const std::vector<Wanted>& wanted, const RosArgs& ros_args, const sigset
   }
   int signal = 0;
   sigwait(&signals, &signal);
+  alarm(kLongestStop_s);
   for (auto& r : running) r.node->stop();
   for (auto& r : running) r.thread.join();
   for (auto& r : running) r.component.reset();
@@ -139,6 +152,10 @@ int main(int argc, char** argv) {
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
 
   std::vector<std::string> arguments(argv + 1, argv + argc);
+  if (!arguments.empty() && arguments.front() == "--json") {
+    g_json = true;
+    arguments.erase(arguments.begin());
+  }
   auto ros_args = RosArgs::extract(arguments);
   if (!ros_args) return complain(ros_args.error());
   auto wanted = wanted_components(arguments, *ros_args);

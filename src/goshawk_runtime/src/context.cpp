@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
 #include <algorithm>
 #include <charconv>
@@ -80,11 +81,34 @@ void use_udp(dds::DomainParticipantQos& qos, const std::string& interfaces) {
   qos.wire_protocol().builtin.metatrafficUnicastLocatorList.push_back(peer);
 }
 
-dds::DomainParticipantQos participant_qos(const ContextOptions& options) {
+// Fast DDS makes its built-in transports itself, where no filter can be put in: the same two.
+void name_builtin_transports(dds::TransportConfigQos& transports) {
+  const auto most =
+      std::max(transports.send_socket_buffer_size, transports.listen_socket_buffer_size);
+  auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
+  udp->sendBufferSize = transports.send_socket_buffer_size;
+  udp->receiveBufferSize = transports.listen_socket_buffer_size;
+  auto memory = std::make_shared<eprosima::fastdds::rtps::SharedMemTransportDescriptor>();
+  memory->segment_size(2 * most);
+  memory->max_message_size(udp->max_message_size());
+  transports.user_transports.insert(transports.user_transports.begin(), {udp, memory});
+  transports.use_builtin_transports = false;
+}
+
+void filter_transports(dds::TransportConfigQos& transports, const wire::FilterOptions& options) {
+  if (transports.use_builtin_transports) name_builtin_transports(transports);
+  for (auto& transport : transports.user_transports) {
+    transport = wire::filtered(transport, options);
+  }
+}
+
+dds::DomainParticipantQos participant_qos(const ContextOptions& options,
+                                          const std::shared_ptr<wire::Refusals>& refusals) {
   auto* factory = dds::DomainParticipantFactory::get_instance();
   factory->load_profiles();
   dds::DomainParticipantQos qos = factory->get_default_participant_qos();
   if (std::getenv("FASTRTPS_DEFAULT_PROFILES_FILE") == nullptr) use_udp(qos, options.interfaces);
+  filter_transports(qos.transport(), {refusals, options.tap});
   // A killed process is forgotten after 3 s instead of 20, a restarted one met at once.
   auto& discovery = qos.wire_protocol().builtin.discovery_config;
   discovery.leaseDuration = {3, 0};
@@ -125,9 +149,9 @@ Result<std::unique_ptr<Context>> Context::create(const ContextOptions& options) 
   auto impl = std::make_unique<Impl>();
   impl->domain = options.domain;
   auto* factory = dds::DomainParticipantFactory::get_instance();
-  impl->participant =
-      factory->create_participant(dds::DomainId_t(options.domain), participant_qos(options),
-                                  &impl->listener, dds::StatusMask::none());
+  impl->participant = factory->create_participant(dds::DomainId_t(options.domain),
+                                                  participant_qos(options, impl->refusals),
+                                                  &impl->listener, dds::StatusMask::none());
   if (impl->participant == nullptr) {
     return fail(ErrorCode::io_failed,
                 "cannot join domain " + std::to_string(options.domain) + " on interfaces '" +
@@ -150,6 +174,12 @@ std::vector<ParticipantInfo> Context::participants() const {
 }
 std::vector<EndpointInfo> Context::endpoints() const {
   return impl_->listener.endpoints();
+}
+std::uint64_t Context::refused_datagrams() const {
+  return impl_->refusals->count();
+}
+std::string Context::last_refusal() const {
+  return impl_->refusals->last();
 }
 
 Context::Impl::~Impl() {

@@ -9,6 +9,7 @@
 #include <mutex>
 
 #include "goshawk/runtime/context.hpp"
+#include "wire/receive_filter.hpp"
 
 namespace goshawk::runtime {
 
@@ -36,6 +37,7 @@ class DiscoveryListener : public dds::DomainParticipantListener {
 
 struct Context::Impl {
   int domain = 0;
+  std::shared_ptr<wire::Refusals> refusals = std::make_shared<wire::Refusals>();
   DiscoveryListener listener;
   dds::DomainParticipant* participant = nullptr;
   dds::Publisher* publisher = nullptr;

@@ -13,6 +13,8 @@
 #include "domain.hpp"
 #include "goshawk/runtime/component.hpp"
 #include "std_msgs.h"
+#include "stranger.hpp"
+#include "wire/datagram.hpp"
 
 namespace goshawk::runtime {
 namespace {
@@ -53,6 +55,7 @@ class Container {
   }
 
   void send(int signal) { kill(pid_, signal); }
+  std::string pid() const { return std::to_string(pid_); }
   /// @return exit status, -signal, or -1000 where it still runs after `most_s`
   int wait(double most_s) {
     const auto end = Steady::now() + std::chrono::duration<double>(most_s);
@@ -191,6 +194,51 @@ TEST_F(Containers, GetLatchedTopicsAgainAfterAKill) {
 TEST_F(Containers, DieOfABugSoThatSupervisionSeesIt) {
   Container container({"probe", "--ros-args", "-p", "label:=throw"});
   EXPECT_EQ(container.wait(60.0), -SIGABRT);
+}
+
+// Profiles name the transports, but the filter is in front of each.
+TEST_F(Containers, RefuseMalformedDatagramsWithAProfileOfTransportsToo) {
+  const auto profile = std::filesystem::temp_directory_path() /
+                       ("goshawk_profile_" + std::to_string(getpid()) + ".xml");
+  std::ofstream(profile) << R"(<?xml version="1.0" encoding="UTF-8"?>
+<profiles xmlns="http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles">
+  <transport_descriptors>
+    <transport_descriptor>
+      <transport_id>udp</transport_id><type>UDPv4</type>
+      <interfaceWhiteList><address>127.0.0.1</address></interfaceWhiteList>
+      <maxInitialPeersRange>60</maxInitialPeersRange>
+    </transport_descriptor>
+    <transport_descriptor><transport_id>memory</transport_id><type>SHM</type></transport_descriptor>
+  </transport_descriptors>
+  <participant profile_name="loopback" is_default_profile="true"><rtps>
+    <userTransports>
+      <transport_id>udp</transport_id><transport_id>memory</transport_id>
+    </userTransports>
+    <useBuiltinTransports>false</useBuiltinTransports>
+    <builtin>
+      <metatrafficUnicastLocatorList>
+        <locator><udpv4><address>127.0.0.1</address></udpv4></locator>
+      </metatrafficUnicastLocatorList>
+      <initialPeersList>
+        <locator><udpv4><address>127.0.0.1</address></udpv4></locator>
+      </initialPeersList>
+    </builtin>
+  </rtps></participant>
+</profiles>
+)";
+  setenv("FASTRTPS_DEFAULT_PROFILES_FILE", profile.c_str(), 1);
+  Container container({"probe"});
+  unsetenv("FASTRTPS_DEFAULT_PROFILES_FILE");
+  ASSERT_TRUE(hears(1)) << container.log();
+  const auto killer =
+      runtime_test::Datagram().add(0x80, runtime_test::Body().zeros(57), 0, 56).bytes();
+  runtime_test::Stranger().send_to_all(killer, container.pid());
+  EXPECT_TRUE(spin_until(node_, [&] {
+    return container.log().find("a datagram was refused") != std::string::npos;
+  })) << container.log();
+  container.send(SIGTERM);
+  EXPECT_EQ(container.wait(60.0), 0) << container.log();
+  std::filesystem::remove(profile);
 }
 
 }  // namespace

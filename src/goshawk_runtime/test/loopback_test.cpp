@@ -3,48 +3,15 @@
 
 #include <gmock/gmock.h>
 
-#include <filesystem>
 #include <fstream>
-#include <set>
 #include <sstream>
 
 #include "domain.hpp"
 #include "std_msgs.h"
+#include "udp_sockets.hpp"
 
 namespace goshawk::runtime {
 namespace {
-
-struct UdpSocket {
-  std::string address;  // hexadecimal, "0100007F" is 127.0.0.1
-  unsigned port = 0;
-};
-
-// Sockets of this process only: others on the machine are not ours to judge.
-std::vector<UdpSocket> own_udp_sockets() {
-  std::set<std::string> own;
-  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
-    std::error_code ignored;
-    const std::string target = std::filesystem::read_symlink(entry.path(), ignored).string();
-    if (target.starts_with("socket:[")) own.insert(target.substr(8, target.size() - 9));
-  }
-  std::vector<UdpSocket> sockets;
-  for (const char* table : {"/proc/net/udp", "/proc/net/udp6"}) {
-    std::ifstream file(table);
-    std::string line;
-    std::getline(file, line);  // headings
-    while (std::getline(file, line)) {
-      std::istringstream words(line);
-      std::string word, local;
-      words >> word >> local;
-      for (int i = 0; i < 8; ++i) words >> word;  // the tenth is the inode
-      if (!own.contains(word)) continue;
-      const auto colon = local.find(':');
-      sockets.push_back(
-          {local.substr(0, colon), unsigned(std::stoul(local.substr(colon + 1), nullptr, 16))});
-    }
-  }
-  return sockets;
-}
 
 // Multicast packets that this machine sent so far.
 long multicast_sent() {
@@ -77,7 +44,8 @@ TEST(Loopback, ListensOnLoopbackAlone) {
   const auto context = runtime_test::join();
   Node node(*context, "node");
   node.subscribe<std_msgs::msg::String>("t", Qos::reliable_last(), [](const auto&, const auto&) {});
-  const auto sockets = own_udp_sockets();
+  // Of this process alone: others on the machine are not ours to judge.
+  const auto sockets = runtime_test::udp_sockets();
   EXPECT_GE(sockets.size(), 2u);  // discovery and data at least
   const unsigned multicast_port = 7400u + 250u * unsigned(runtime_test::domain());
   for (const auto& socket : sockets) {

@@ -7,6 +7,12 @@ import harness
 import second_opinion
 from calls_case import DONE, NOT_DONE, WRONG_CALL, CallsCase, ascii_pcd
 
+ALL_VERBS = ["plan", "fly", "check", "world", "campaign", "launch", "view", "run", "bench plan",
+             "bench search", "bench scenario", "bench stage", "bench dds", "bench corridor",
+             "bench trajectory", "bench tracking", "conform", "record", "replay", "topic list",
+             "topic info", "topic echo", "topic hz", "topic delay", "topic bw", "topic pub",
+             "node list", "param list", "param get", "param set", "param describe", "param dump",
+             "doctor"]
 PLAN_KEYS = {"ok", "code", "message", "request", "stages", "path", "corridor", "trajectory",
              "certificate"}
 
@@ -111,9 +117,11 @@ class BadPoints(CallsCase):
                      self.sandbox.folder / "out"], WRONG_CALL, "invalid_parameter", "--goal")
 
     def test_fly_refuses_a_start_in_a_wall_before_anything_starts(self):
-        answer = self.expect(["fly", f"--start={self.occupied_point()}", "--output",
-                              self.sandbox.folder / "out"], NOT_DONE, "start_occupied")
+        out = self.sandbox.folder / "out"
+        answer = self.expect(["fly", f"--start={self.occupied_point()}", "--output", out], NOT_DONE,
+                             "start_occupied")
         self.assertNotIn("legs", answer)
+        self.assertFalse(out.exists())
 
 
 class BadNumbers(CallsCase):
@@ -239,13 +247,44 @@ class BadCalls(CallsCase):
         self.wrong(["world"], "output")
 
     def test_wrong_options_answer_in_json_where_that_is_asked_for(self):
-        for verb in ("plan", "fly", "world"):
-            self.expect([verb, "--gaol", "1,2,3"], WRONG_CALL, "invalid_input", "gaol")
+        for verb in ALL_VERBS:
+            self.expect([*verb.split(), "--gaol", "1,2,3"], WRONG_CALL, "invalid_input", "gaol")
+
+    def test_failures_of_every_verb_have_one_shape(self):
+        for arguments, status, code in [
+                (["check", "/no/such/flight"], WRONG_CALL, "invalid_parameter"),
+                (["world", "out.bt", "--kind", "forrest"], WRONG_CALL, "invalid_parameter"),
+                (["campaign", "--missions", "0"], WRONG_CALL, "invalid_parameter"),
+                (["campaign", "--kinds", "forrest"], WRONG_CALL, "invalid_parameter"),
+                (["campaign", "--output", "/proc/campaign"], NOT_DONE, "io_failed"),
+                (["launch", "flihgt"], WRONG_CALL, "invalid_parameter"),
+                (["launch"], WRONG_CALL, "invalid_input"),
+                (["view", "/no/such/flight"], WRONG_CALL, "io_failed"),
+                (["run", "traker"], WRONG_CALL, "invalid_parameter"),
+                (["bench", "stage", "tracker", "--input", "/no.mcap"], NOT_DONE, "io_failed"),
+                (["bench", "stage", "traker", "--input", "/no.mcap"], WRONG_CALL,
+                 "invalid_parameter"),
+                (["conform", "traker"], WRONG_CALL, "invalid_parameter"),
+                (["record", "a b"], WRONG_CALL, "invalid_parameter"),
+                (["replay", "/no.mcap"], NOT_DONE, "io_failed"),
+                (["topic", "echo", "/a b"], WRONG_CALL, "invalid_parameter"),
+                (["node", "list", "--timeout", "0.2"], NOT_DONE, "stage_silent"),
+                (["param", "describe", "traker"], WRONG_CALL, "invalid_parameter"),
+                (["fly", "--launch", "flihgt", "--output", self.sandbox.folder / "out"],
+                 WRONG_CALL, "invalid_parameter"),
+                (["fly", "-p", "tracker:mas_kg:=1", "--output", self.sandbox.folder / "out"],
+                 WRONG_CALL, "invalid_parameter")]:
+            self.expect(arguments, status, code)
+        self.assertFalse((self.sandbox.folder / "out").exists(), "a refused fly leaves no folder")
 
     def test_help(self):
         for verb in ("topic", "node", "param", "bench"):
             with self.subTest(verb=verb):
                 self.assertIn(verb, self.help_of(verb))
+        for verb in ("fly", "topic echo", "topic"):
+            helped = self.sandbox.goshawk("help", *verb.split(), timeout_s=20)
+            self.assertEqual((helped.status, helped.out), (DONE, self.help_of(verb)))
+        self.wrong(["help", "flu"], "flu", "fly")
         self.assertEqual(self.sandbox.goshawk("--help").status, DONE)
         self.assertIn("goshawk ", self.sandbox.goshawk("--version").out)
 
@@ -255,9 +294,9 @@ class BadCalls(CallsCase):
         return outcome.out
 
     def test_help_shows_examples_of_its_own_options(self):
-        for verb in ("plan", "fly", "check", "world", "campaign", "launch", "view", "run",
-                     "bench plan", "conform", "record", "replay", "topic echo", "topic hz",
-                     "topic pub", "param get", "param set", "param list", "param describe"):
+        for verb in ALL_VERBS:
+            if verb in ("topic list", "node list", "doctor"):
+                continue  # nothing to show
             with self.subTest(verb=verb):
                 text = self.help_of(verb)
                 head, _, examples = text.partition("xample")
@@ -267,6 +306,21 @@ class BadCalls(CallsCase):
                     # What stands behind --ros-args is ROS 2's.
                     if option not in ("--ros-args", "-p", "-r", "--params-file", "--log-level"):
                         self.assertIn(option, head)
+
+    def complete(self, *words):
+        return self.sandbox.goshawk("complete", *words, timeout_s=20).out.split()
+
+    def test_what_may_follow(self):
+        self.assertLessEqual({verb.split()[0] for verb in ALL_VERBS}, set(self.complete("")))
+        self.assertNotIn("place", self.complete(""))
+        self.assertLessEqual({"flight", "flight_container"}, set(self.complete("launch", "")))
+        self.assertIn("tracker", self.complete("run", ""))
+        self.assertIn("--goal", self.complete("fly", "--map", "x.bt", "-"))
+        self.assertEqual(set(self.complete("world", "--kind", "")),
+                         {"boxes", "forest", "office", "noise"})
+        self.assertIn("v_max_m_s", self.complete("param", "set", "/navigator", ""))
+        self.assertNotIn("mass_kg", self.complete("param", "set", "/tracker", ""))
+        self.assertIn("astar", self.complete("param", "set", "/path_search", "planner", ""))
 
     def test_numbers_of_fly(self):
         fly = ["--output", self.sandbox.folder / "out"]

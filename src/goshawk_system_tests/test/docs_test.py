@@ -22,7 +22,7 @@ ENDLESS = [(re.compile(r"goshawk launch\b"), lambda text: starts_all(text)),
 def starts_all(text):
     """Each of the stages that a launch names runs."""
     named = re.search(r"\[launch\] starting (.*?);", text)
-    return named is not None and all(f"[launch] {stage}: running\n" in text
+    return named is not None and all(f"[launch] {stage}: running " in text
                                      for stage in named.group(1).split(", "))
 
 

@@ -208,7 +208,8 @@ class Publisher:
         self.sent += 1
         until(lambda: len(self.process.lines()) == self.sent or not self.process.alive(), 20.0,
               0.01)
-        if len(self.process.lines()) != self.sent:
+        lines = self.process.lines()
+        if len(lines) != self.sent or lines[-1].get("ok") is False:
             raise AssertionError(f"nobody took the message: {self.process.outcome()}")
 
 
@@ -221,7 +222,8 @@ class Sandbox:
         self.domain = Domain()
         self.token = uuid.uuid4().hex
         self.env = {**os.environ, "ROS_DOMAIN_ID": str(self.domain.number), TOKEN: self.token,
-                    "CYCLONEDDS_URI": CYCLONE, "PYTHONDONTWRITEBYTECODE": "1"}
+                    "CYCLONEDDS_URI": CYCLONE, "PYTHONDONTWRITEBYTECODE": "1",
+                    "XDG_STATE_HOME": str(self.folder / "state")}
         for name in ("GOSHAWK_INTERFACES", "FASTRTPS_DEFAULT_PROFILES_FILE"):
             self.env.pop(name, None)
         self.processes = []

@@ -208,12 +208,10 @@ class LaunchFails(SystemTest):
     def setUpClass(cls):
         """What the last test looks at: it takes its time."""
         cls.early = harness.Sandbox()
-        cls.hopeless = {}
-        for name, command in {"ends": "[/bin/false]", "absent": "[/no/such/program]"}.items():
-            path = cls.early.folder / f"{name}.yaml"
-            path.write_text("stages:\n  - component: corridor_builder\n"
-                            f"  - command: {command}\n    name: {name}\n")
-            cls.hopeless[name] = Launch(cls.early, path)
+        path = cls.early.folder / "ends.yaml"
+        path.write_text("stages:\n  - component: corridor_builder\n"
+                        "  - command: [/bin/false]\n    name: ends\n")
+        cls.hopeless = Launch(cls.early, path)
 
     @classmethod
     def tearDownClass(cls):
@@ -239,14 +237,25 @@ class LaunchFails(SystemTest):
         for word in ("tracker", "mas_kg", "mass_kg", "max_tilt_rad", "max_thrust_n"):
             self.assertIn(word, outcome.out)
 
-    def test_wrong_programs_that_always_end_or_are_not_there_are_given_up(self):
-        for name, launch in self.hopeless.items():
-            status = launch.process.wait(60.0)
-            self.assertEqual(status, 1, launch.tails())
-            self.assert_civil(launch.process.outcome())
-            failed = launch.events("failed")
-            self.assertEqual([e["stage"] for e in failed], [name])
-            self.assertIn("gave up", failed[0]["message"])
+    def test_wrong_programs_that_always_end_are_given_up(self):
+        launch = self.hopeless
+        status = launch.process.wait(60.0)
+        self.assertEqual(status, 1, launch.tails())
+        self.assert_civil(launch.process.outcome())
+        failed = launch.events("failed")
+        self.assertEqual([e["stage"] for e in failed], ["ends"])
+        self.assertIn("gave up", failed[0]["message"])
+        self.assertIn("exit status 1", failed[0]["message"])
+        self.assertEqual((failed[0]["ok"], failed[0]["code"]), (False, "stage_silent"))
+
+    def test_a_program_that_cannot_be_started_is_refused_at_once_with_its_path(self):
+        for command, path in (("[/no/such/program]", "/no/such/program"),
+                              ("[./absent]", self.sandbox.folder / "absent"),
+                              ("[no_such_program_xyz]", "no_such_program_xyz")):
+            outcome = self.launch(f"stages:\n  - component: tracker\n  - command: {command}\n")
+            self.assertEqual(outcome.status, 2, str(outcome))
+            self.assertIn(str(path), outcome.out)
+            self.assertFalse((self.sandbox.folder / "logs").exists(), "nothing was started")
 
     def test_wrong_launch_files(self):
         component = "stages: [{component: tracker}]\n"
@@ -284,6 +293,8 @@ class LaunchFails(SystemTest):
                 self.assert_civil(outcome)
                 self.assertEqual(outcome.status, 2, str(outcome))
                 self.assertIn(name, outcome.err)
+        near = self.sandbox.goshawk("launch", "flihgt", timeout_s=20)
+        self.assertIn("did you mean flight?", near.err)
 
     def test_a_folder_of_its_name_does_not_hide_an_installed_file(self):
         (self.sandbox.folder / "flight").mkdir()

@@ -10,7 +10,6 @@
 Serves it on this machine until Ctrl-C.
 """
 
-import argparse
 import json
 import os
 import pathlib
@@ -22,6 +21,7 @@ import sys
 import tempfile
 import threading
 import time
+import types
 
 import page_server
 
@@ -37,29 +37,9 @@ class Fault(Exception):
         self.code, self.status = code, status
 
 
-def parse(arguments):
-    parser = argparse.ArgumentParser(prog="goshawk view", description=__doc__.split("\n\n")[0],
-                                     formatter_class=argparse.RawDescriptionHelpFormatter,
-                                     epilog="examples:\n  goshawk view\n"
-                                     "  goshawk view flight.mcap --port 0\n"
-                                     "  goshawk view --live --foxglove")
-    parser.add_argument("what", nargs="?", help="flight folder, or MCAP recording (default: the "
-                        "newest folder in ./flights)")
-    parser.add_argument("--live", action="store_true", help="look at what flies now")
-    parser.add_argument("--foxglove", action="store_true", help="in Foxglove Studio, which "
-                        "tools/setup --viewer fetches")
-    parser.add_argument("--port", type=int, default=8080, help="of the page (default 8080; 0: any)")
-    parser.add_argument("--bridge", default="ws://127.0.0.1:8765", help="where the bridge listens")
-    parser.add_argument("--no-open", action="store_true", help="do not start a browser")
-    parser.add_argument("--check", action="store_true", help="only say what would be shown")
-    parser.add_argument("--json", action="store_true", help="print one JSON object")
-    parser.add_argument("--prefix", help=argparse.SUPPRESS)
-    options = parser.parse_args(arguments)
-    if options.live and options.what:
-        parser.error("a flight or recording, and --live: one of them")
-    if not 0 <= options.port <= 65535:
-        parser.error("--port goes from 0 to 65535")
-    return options
+def read_options(text):
+    """One JSON object, which goshawk_cli writes (verbs/view.cpp)."""
+    return types.SimpleNamespace(**json.loads(text))
 
 
 def newest_flight():
@@ -283,7 +263,7 @@ def run(options):
 
 
 def main():
-    options = parse(sys.argv[1:])
+    options = read_options(sys.argv[1])
     try:
         run(options)
     except Fault as fault:

@@ -1,8 +1,10 @@
 #include "session.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <stdexcept>
 
 namespace goshawk::viewer_bridge {
 namespace {
@@ -11,8 +13,12 @@ using Json = nlohmann::json;
 
 constexpr std::size_t kMostChannels = 1000;  // of one client, of each kind
 
+// The library would cast 1e30 or -1, which no id is.
 std::uint32_t id_of(const Json& value) {
-  return value.get<std::uint32_t>();
+  if (!value.is_number_unsigned()) throw std::invalid_argument("no id");
+  const auto id = value.get<std::uint64_t>();
+  if (id > std::numeric_limits<std::uint32_t>::max()) throw std::invalid_argument("no id");
+  return std::uint32_t(id);
 }
 
 }  // namespace
@@ -73,7 +79,7 @@ Session::Answer Session::on_text(const std::string& text,
     } else {
       answer.warnings.push_back("this bridge does not know '" + op.substr(0, 40) + "'");
     }
-  } catch (const Json::exception&) {
+  } catch (const std::exception&) {
     answer.close = "this is no message of foxglove.websocket.v1";
   }
   return answer;

@@ -52,6 +52,8 @@ TEST(Session, AsksWhoeverSendsGarbageToGo) {
   for (const char* garbage :
        {"", "garbage", "[]", "{}", "null", R"({"op":7})", R"({"op":"subscribe"})",
         R"({"op":"subscribe","subscriptions":[{"id":"x","channelId":1}]})",
+        R"({"op":"subscribe","subscriptions":[{"id":1e30,"channelId":1}]})",
+        R"({"op":"subscribe","subscriptions":[{"id":-1,"channelId":1}]})",
         R"({"op":"subscribe","subscriptions":{"id":1}})", R"({"op":"advertise","channels":[{}]})",
         "\xff\xfe", "{\"op\":\"\xff\"}"}) {
     Session session(1);

@@ -1,10 +1,12 @@
 #include "flight/flight_folder.hpp"
 
+#include <fmt/format.h>
+
 #include <fstream>
 
-#include "folders.hpp"
 #include "goshawk/flight_report/files.hpp"
 #include "goshawk/flight_report/page.hpp"
+#include "process.hpp"
 
 namespace goshawk::cli {
 namespace {
@@ -39,7 +41,8 @@ Status write_flight(const std::string& folder, const Json& summary, const Flight
   std::ofstream json(folder + "/flight.json");
   json << summary.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
   if (!json.flush()) {
-    return fail(ErrorCode::io_failed, folder + "/flight.json cannot be written: is the disk full?");
+    return fail(ErrorCode::io_failed,
+                fmt::format("{}/flight.json cannot be written: is the disk full?", folder));
   }
   if (record.flown().empty()) return success();
   const VoxelGrid raw{.geometry = map.raw.geometry, .occupied = map.raw.occupied, .known = {}};
@@ -60,7 +63,7 @@ Status write_flight(const std::string& folder, const Json& summary, const Flight
   if (auto drawn = flight_report::write_flight_folder(flight, folder); !drawn) return drawn;
   return flight_report::write_flight_page(
       flight, page_template(), folder + "/flight.html",
-      summary.dump(-1, ' ', false, Json::error_handler_t::replace));
+      to_line(summary));
 }
 
 }  // namespace goshawk::cli

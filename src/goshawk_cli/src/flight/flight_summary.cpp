@@ -1,8 +1,9 @@
 #include "flight/flight_summary.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace goshawk::cli {
 namespace {
@@ -101,36 +102,37 @@ double number(const Json& object, const char* key) {
   return object.contains(key) && object[key].is_number() ? object[key].get<double>() : NAN;
 }
 
+std::string text(const Json& object, const char* key) {
+  return object[key].get<std::string>();
+}
+
 void print_leg(const Json& leg, std::size_t index, std::size_t count) {
   const auto& g = leg["goal"];
-  std::printf(
-      "\nleg %zu of %zu to (%g, %g, %g): %s\n", index, count, g[0].get<double>(),
-      g[1].get<double>(), g[2].get<double>(),
-      leg["arrived"].get<bool>()
-          ? "arrived"
-          : (leg["code"].get<std::string>() + ": " + leg["message"].get<std::string>()).c_str());
+  fmt::print("\nleg {} of {} to ({:g}, {:g}, {:g}): {}\n", index, count, g[0].get<double>(),
+             g[1].get<double>(), g[2].get<double>(),
+             leg["arrived"].get<bool>() ? "arrived" : text(leg, "code") + ": " + text(leg, "message"));
   for (const auto& stage : leg["stages"]) {
-    std::printf("  %-21s %-20s compute %8.1f us   wire %8.1f us\n",
-                stage["name"].get<std::string>().c_str(),
-                stage["implementation"].get<std::string>().c_str(), number(stage, "compute_us"),
-                number(stage, "wire_us"));
+    fmt::print("  {:<21} {:<20} compute {:8.1f} us   wire {:8.1f} us\n", text(stage, "name"),
+               text(stage, "implementation"), number(stage, "compute_us"),
+               number(stage, "wire_us"));
   }
   if (const auto& p = leg["path"]; !p.is_null()) {
-    std::printf("  path       %.3f m, %lld waypoints; pruned %.3f m, %lld waypoints\n",
-                number(p, "raw_length_m"), p["waypoints_raw"].get<long long>(),
-                number(p, "pruned_length_m"), p["waypoints"].get<long long>());
+    fmt::print("  path       {:.3f} m, {} waypoints; pruned {:.3f} m, {} waypoints\n",
+               number(p, "raw_length_m"), p["waypoints_raw"].get<std::int64_t>(),
+               number(p, "pruned_length_m"), p["waypoints"].get<std::int64_t>());
   }
   if (const auto& c = leg["corridor"]; !c.is_null()) {
-    std::printf("  corridor   %lld polytopes\n", c["polytopes"].get<long long>());
+    fmt::print("  corridor   {} polytopes\n", c["polytopes"].get<std::int64_t>());
   }
   if (const auto& t = leg["trajectory"]; !t.is_null()) {
-    std::printf("  trajectory %.3f m in %.3f s, mean %.3f m/s, top %.3f m/s and %.3f m/s^2\n",
-                number(t, "length_m"), number(t, "duration_s"), number(t, "mean_speed_m_s"),
-                number(t, "max_speed_m_s"), number(t, "max_acceleration_m_s2"));
+    fmt::print(
+        "  trajectory {:.3f} m in {:.3f} s, mean {:.3f} m/s, top {:.3f} m/s and {:.3f} m/s^2\n",
+        number(t, "length_m"), number(t, "duration_s"), number(t, "mean_speed_m_s"),
+        number(t, "max_speed_m_s"), number(t, "max_acceleration_m_s2"));
   }
   if (const auto& t = leg["tracking"]; !t.is_null()) {
-    std::printf("  tracking   rms %.1f mm, largest %.1f mm\n", 1e3 * number(t, "rms_error_m"),
-                1e3 * number(t, "max_error_m"));
+    fmt::print("  tracking   rms {:.1f} mm, largest {:.1f} mm\n", 1e3 * number(t, "rms_error_m"),
+               1e3 * number(t, "max_error_m"));
   }
 }
 
@@ -175,17 +177,16 @@ Json summary_json(const FlightOutcome& outcome, const FlightRecorder& record,
 void print_summary(const Json& summary) {
   const auto& legs = summary["legs"];
   for (std::size_t i = 0; i < legs.size(); ++i) print_leg(legs[i], i + 1, legs.size());
-  std::printf("\n");
+  fmt::print("\n");
   if (const auto& c = summary["clearance"]; !c.is_null()) {
-    std::printf("second opinion: %s\n", c["sentence"].get<std::string>().c_str());
+    fmt::print("second opinion: {}\n", text(c, "sentence"));
   }
-  std::printf(
-      "verdict: %s%s%s\n", summary["verdict"].get<std::string>().c_str(),
-      summary["code"] == "ok" ? "" : (", " + summary["code"].get<std::string>()).c_str(),
-      summary["message"] == "" ? "" : (": " + summary["message"].get<std::string>()).c_str());
-  const auto folder = summary["folder"].get<std::string>();
-  std::printf("flight folder: %s\nlook at it:    %s/flight.html (opens by double click)\n",
-              folder.c_str(), folder.c_str());
+  fmt::print("verdict: {}{}{}\n", text(summary, "verdict"),
+             summary["code"] == "ok" ? "" : ", " + text(summary, "code"),
+             summary["message"] == "" ? "" : ": " + text(summary, "message"));
+  const auto folder = text(summary, "folder");
+  fmt::print("flight folder: {}\nlook at it:    {}/flight.html (opens by double click)\n", folder,
+             folder);
 }
 
 }  // namespace goshawk::cli

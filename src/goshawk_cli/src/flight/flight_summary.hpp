@@ -1,8 +1,10 @@
 #pragma once
 
-#include "cli.hpp"
+#include <optional>
+
 #include "flight/flight_recorder.hpp"
 #include "goshawk/flight_check/flight_check.hpp"
+#include "json.hpp"
 
 namespace goshawk::cli {
 
@@ -18,6 +20,7 @@ struct LegOutcome {
 
 struct FlightOutcome {
   std::vector<LegOutcome> legs;
+  std::optional<Error> refusal;  // the call was wrong: nothing was flown
   Result<flight_check::Verdict> verdict = fail(ErrorCode::invalid_input, "not judged");
 
   bool all_arrived() const;

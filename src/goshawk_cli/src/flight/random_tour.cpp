@@ -1,5 +1,7 @@
 #include "flight/random_tour.hpp"
 
+#include <fmt/format.h>
+
 #include "goshawk/core/random.hpp"
 
 namespace goshawk::cli {
@@ -41,11 +43,10 @@ Result<Tour> random_tour(const std::shared_ptr<const VoxelGrid>& grid,
     }
     if (int(tour.goals_map.size()) == count) return tour;
   }
-  return fail(ErrorCode::no_path, "found no " + std::to_string(count) +
-                                      " reachable goals at least " +
-                                      std::to_string(min_distance_m) +
-                                      " m apart: is the map large and open enough for this radius "
-                                      "and margin?");
+  return fail(ErrorCode::no_path,
+              fmt::format("found no {} reachable goals at least {:g} m apart: is the map large and "
+                          "open enough for this radius and margin?",
+                          count, min_distance_m));
 }
 
 }  // namespace goshawk::cli

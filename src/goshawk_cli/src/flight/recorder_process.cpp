@@ -1,23 +1,21 @@
 #include "flight/recorder_process.hpp"
 
-#include <unistd.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <set>
 
 namespace goshawk::cli {
 
-Result<LaunchProcess> start_recorder(const std::string& folder, int domain) {
-  return LaunchProcess::start_verb(
-      {"record", "--stop-with-parent", "--parent", std::to_string(getpid()), "--overwrite", "-o",
-       folder + "/flight.mcap"},
-      domain, folder + "/logs/record.log");
+Result<ChildVerb> start_recorder(const std::string& folder, int domain) {
+  return ChildVerb::start({"record", "--overwrite", "-o", folder + "/flight.mcap"}, domain,
+                          folder + "/logs/record.log");
 }
 
 bool hears_planning(const runtime::Context& context, pid_t recorder) {
   std::string prefix;
   for (const auto& participant : context.participants()) {
-    if (participant.name == "goshawk_" + std::to_string(recorder)) prefix = participant.guid_prefix;
+    if (participant.name == fmt::format("goshawk_{}", recorder)) prefix = participant.guid_prefix;
   }
   std::set<std::string> heard;
   for (const auto& endpoint : context.endpoints()) {

@@ -1,31 +1,29 @@
 #pragma once
 
-#include "cli.hpp"
-#include "planning/planning.hpp"
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "goshawk/core/limits.hpp"
+#include "goshawk/runtime/ros_args.hpp"
 
 namespace goshawk::cli {
 
-/// The options that `plan` and `fly` share: which map, what vehicle, what limits. What the call
-/// lacks comes from --params-file, then from the defaults.
+/// Which map, what vehicle, what limits: what `plan`, `fly` and `bench plan` share. What is not
+/// given comes from the files of parameters, then from the defaults.
 struct MapOptions {
   std::string map;
-  std::string unknown;
-  // As written; empty: not given.
-  std::string v_max, a_max, norm, j_max, v_max_vertical, a_max_vertical;
-  std::string radius, margin, resolution;
+  // Parameters of the map server as written, which checks them; empty: not given.
+  std::string unknown, radius, margin, resolution;
+  std::optional<double> v_max_m_s, a_max_m_s2, v_max_vertical_m_s, a_max_vertical_m_s2, j_max_m_s3;
+  std::string norm;  // a word of LimitNorm; empty: not given
   std::vector<std::string> params_files;
 
-  void add_to(CLI::App& app);
+  /// As `--ros-args` would say it, so that one code reads and checks both.
+  runtime::RosArgs ros_args() const;
 
-  /// The same as `--ros-args`, so that one code reads and checks both.
-  runtime::RosArgs ros_args(const std::string& map_file) const;
-
-  /// @return invalid_parameter for what is not a number or not a norm; zero and negative limits are
-  /// for Limits::check
-  Result<Limits> limits(const Limits& defaults) const;
+  /// The defaults unless given; zero or negative ones are for Limits::check.
+  Limits limits() const;
 };
-
-/// A default world under the temporary folder, for calls that name no map. @return its file
-Result<std::string> save_default_world(const std::string& folder);
 
 }  // namespace goshawk::cli

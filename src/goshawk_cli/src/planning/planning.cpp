@@ -25,6 +25,18 @@ auto run_stage(Plan& plan, std::string name, std::string implementation, Work&& 
   return std::move(result);
 }
 
+Result<map_server::OcTreePtr> read_tree(const map_server::Config& config) {
+  auto source = map_server::load_map(config.map_file, map_server::load_options(config));
+  if (!source) return source.error();
+  return source->tree;
+}
+
+Result<map_server::OcTreePtr> world_tree(const worlds::WorldSpec& spec) {
+  const auto world = worlds::make_world(spec);
+  if (!world) return world.error();
+  return map_server::make_octree(world->geometry, world->occupied, {});
+}
+
 }  // namespace
 
 Result<PlanningConfig> PlanningConfig::read(const runtime::RosArgs& args) {
@@ -45,15 +57,15 @@ Result<PlanningConfig> PlanningConfig::read(const runtime::RosArgs& args) {
   return c;
 }
 
-Result<LoadedMap> load_map(const map_server::Config& config) {
-  auto source = map_server::load_map(config.map_file, map_server::load_options(config));
-  if (!source) return source.error();
-  auto raw = map_server::voxelize(*source->tree, map_server::voxelize_options(config));
+Result<LoadedMap> load_map(const PlanningConfig& config, const worlds::WorldSpec& world) {
+  auto tree = config.needs_world() ? world_tree(world) : read_tree(config.map);
+  if (!tree) return tree.error();
+  auto raw = map_server::voxelize(**tree, map_server::voxelize_options(config.map));
   if (!raw) return raw.error();
-  auto grown = map_server::make_voxel_grid(*raw, map_server::growth(config), 1);
+  auto grown = map_server::make_voxel_grid(*raw, map_server::growth(config.map), 1);
   if (!grown) return grown.error();
   return LoadedMap{*std::move(raw), std::make_shared<const VoxelGrid>(*std::move(grown)),
-                   source->tree, map_server::growth(config).unknown};
+                   *std::move(tree), map_server::growth(config.map).unknown};
 }
 
 Result<Planner> Planner::create(const PlanningConfig& config) {

@@ -9,6 +9,7 @@
 #include "goshawk/path_search/path_search.hpp"
 #include "goshawk/runtime/ros_args.hpp"
 #include "goshawk/trajectory_optimizer/trajectory_optimizer.hpp"
+#include "goshawk/worlds/world.hpp"
 
 namespace goshawk::cli {
 
@@ -20,6 +21,9 @@ struct PlanningConfig {
   trajectory_optimizer::Config trajectory;
 
   static Result<PlanningConfig> read(const runtime::RosArgs& args);
+
+  /// Whether the parameters name no map: then a made world stands for it.
+  bool needs_world() const { return map.map_file.empty() && !map.use_box; }
 };
 
 struct StageTime {
@@ -35,7 +39,9 @@ struct LoadedMap {
   map_server::OcTreePtr tree;
   map_server::UnknownPolicy unknown = map_server::UnknownPolicy::occupied;
 };
-Result<LoadedMap> load_map(const map_server::Config& config);
+/// @param world that is made if the config names no map
+Result<LoadedMap> load_map(const PlanningConfig& config,
+                           const worlds::WorldSpec& world = worlds::default_world());
 
 /// What came out of each stage, as far as it went.
 struct Plan {

@@ -1,6 +1,10 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,6 +17,9 @@ struct ContextOptions {
   int domain = 0;                       // 0 to 232
   std::string interfaces = "loopback";  // "loopback", "all", or IPv4 addresses with commas
   std::vector<std::string> node_names;  // full names, for `goshawk node list`
+  /// For tests: is given each datagram that arrives, before it is checked, and each one sent. It is
+  /// called by Fast DDS' threads, several at once.
+  std::function<void(std::span<const std::byte> datagram, bool sent)> tap{};
 
   /// ROS_DOMAIN_ID and GOSHAWK_INTERFACES, where they are set.
   /// @return invalid_parameter for a domain that is no number from 0 to 232
@@ -38,8 +45,9 @@ struct ParticipantInfo {
 /// One DDS participant: a process' membership in a domain.
 ///
 /// An XML profile file (FASTRTPS_DEFAULT_PROFILES_FILE) with a default participant profile
-/// decides alone about transports; else they are UDP on the chosen interfaces, by default on
-/// loopback only, found without multicast.
+/// decides about transports; without one they are UDP on the chosen interfaces, by default on
+/// loopback only, found without multicast. Either way, every datagram is checked before Fast DDS
+/// reads it.
 class Context {
  public:
   struct Impl;
@@ -52,6 +60,10 @@ class Context {
   int domain() const;
   std::vector<ParticipantInfo> participants() const;  // others, not this one
   std::vector<EndpointInfo> endpoints() const;        // of others
+
+  /// Malformed or forged datagrams, which Fast DDS was not given (docs/security.md).
+  std::uint64_t refused_datagrams() const;
+  std::string last_refusal() const;  // what was wrong and who sent it; empty: none yet
 
   Impl& impl() { return *impl_; }
 

@@ -11,13 +11,12 @@
 
 namespace goshawk::runtime {
 
-/// A DDS domain from 101 to 232 for a test or a measurement: none of those that run at the same
-/// time on this machine has it. Given back when the process ends, however it does.
-/// @throws std::runtime_error where all are held
-inline int hold_private_domain() {
-  constexpr int kFirst = 101, kMany = 132;
-  for (int k = 0; k < kMany; ++k) {
-    const int domain = kFirst + (int(getpid()) * 7 + k) % kMany;
+/// A DDS domain of `many` from `first` on that no other process on this machine holds; for a test or
+/// a measurement, unless said otherwise. Given back when this process ends, however it ends.
+/// @throws std::runtime_error if all are held
+inline int hold_private_domain(int first = 101, int many = 132) {
+  for (int k = 0; k < many; ++k) {
+    const int domain = first + (int(getpid()) * 7 + k) % many;
     // A name that lives with its socket; the system tests hold theirs in the same way.
     const std::string name = "goshawk-test-domain-" + std::to_string(domain);
     sockaddr_un address{};
@@ -28,7 +27,8 @@ inline int hold_private_domain() {
     if (bind(held, reinterpret_cast<const sockaddr*>(&address), size) == 0) return domain;
     close(held);
   }
-  throw std::runtime_error("no DDS domain from 101 to 232 is free");
+  throw std::runtime_error("no DDS domain from " + std::to_string(first) + " to " +
+                           std::to_string(first + many - 1) + " is free");
 }
 
 }  // namespace goshawk::runtime

@@ -1,0 +1,231 @@
+#include "flight/flight.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+
+#include "flight/child_verb.hpp"
+#include "flight/flight_folder.hpp"
+#include "flight/recorder_process.hpp"
+#include "goshawk/introspection/interruptible.hpp"
+
+namespace goshawk::cli {
+namespace {
+
+constexpr double kReady_s = 30.0;     // longest wait for the stages
+constexpr double kDiscovery_s = 0.5;  // among stages that we have found, it takes no longer
+
+class Flight {
+ public:
+  /// @param recorded whether the recorder hears the planning stages
+  Flight(const FlyOptions& options, const Preparation& preparation, const std::string& folder,
+         const Say& say, runtime::Node& node, ChildVerb launch, std::function<bool()> recorded)
+      : options_(options),
+        p_(preparation),
+        folder_(folder),
+        say_(say),
+        record_(node),
+        launch_(std::move(launch)),
+        recorded_(std::move(recorded)) {}
+
+  FlightOutcome fly() {
+    FlightOutcome outcome;
+    if (auto ready = wait_until_ready(); !ready) {
+      if (ready.code() == ErrorCode::invalid_parameter) outcome.refusal = ready.error();
+      LegOutcome leg;
+      leg.goal_map = p_.tour.goals_map.front();
+      leg.code = to_string(ready.code());
+      leg.message = ready.error().message;
+      outcome.legs.push_back(leg);
+    } else {
+      for (const Vec3& goal : p_.tour.goals_map) {
+        outcome.legs.push_back(fly_leg(goal, outcome.legs.size() + 1));
+        if (!outcome.legs.back().arrived) break;
+      }
+    }
+    launch_.stop();
+    outcome.verdict = judge();
+    return outcome;
+  }
+
+  const FlightRecorder& record() const { return record_; }
+
+ private:
+  Status launch_lives() {
+    if (introspection::Interruptible::interrupted()) {
+      return fail(ErrorCode::cancelled, "interrupted");
+    }
+    if (launch_.ended()) return launch_.failure();
+    return success();
+  }
+
+  Status wait_until_ready() {
+    static constexpr const char* kNeeded[] = {
+        "map_server", "path_search", "corridor_builder", "trajectory_optimizer",
+        "navigator",  "tracker",     "simulator"};
+    Status lives = success();
+    const auto missing = [&] {
+      std::string names;
+      for (const char* stage : kNeeded) {
+        if (!record_.is_ready(stage)) names += (names.empty() ? "" : ", ") + std::string(stage);
+      }
+      return names;
+    };
+    say_("starting stages ...");
+    record_.listen(kReady_s, [&] {
+      lives = launch_lives();
+      return !lives ||
+             (missing().empty() && !record_.flown().empty() && record_.goal_readers() > 0);
+    });
+    if (!lives) return lives;
+    if (const auto names = missing(); !names.empty()) {
+      return fail(ErrorCode::stage_silent,
+                  fmt::format("these stages did not report ready within {:g} s: {}; see {}/logs",
+                              kReady_s, names, folder_));
+    }
+    if (record_.flown().empty() || record_.goal_readers() == 0) {
+      return fail(ErrorCode::stage_silent, "no odometry came, or no stage reads goal_pose");
+    }
+    if (!record_.listen(5.0, recorded_)) say_("the recorder does not hear all stages yet");
+    // The stages that we have found may not have found each other yet: the first plan needs the map.
+    record_.listen(kDiscovery_s, [] { return false; });
+    say_("all stages ready");
+    return success();
+  }
+
+  LegOutcome fly_leg(const Vec3& goal, std::size_t number) {
+    LegOutcome leg;
+    leg.goal_map = goal;
+    const std::int64_t begin_ns = record_.now_ns();
+    std::int64_t said_ns = begin_ns;
+    Status lives = success();
+    record_.send_goal(goal);
+    const bool answered = record_.listen(options_.timeout_s, [&] {
+      lives = launch_lives();
+      if (record_.now_ns() - said_ns > 1'000'000'000) {
+        said_ns = record_.now_ns();
+        say_say_(goal, number, double(said_ns - begin_ns) * 1e-9);
+      }
+      const auto& state = record_.navigator().state();
+      return !lives || state == "arrived" || state == "failed";
+    });
+    const auto& state = record_.navigator();
+    leg.arrived = lives.ok() && answered && state.state() == "arrived";
+    leg.request_id = state.request_id();
+    leg.flight_time_s = double(record_.now_ns() - begin_ns) * 1e-9;
+    if (!lives) {
+      leg.code = to_string(lives.code());
+      leg.message = lives.error().message;
+    } else if (!answered) {
+      leg.code = to_string(ErrorCode::deadline_exceeded);
+      leg.message = fmt::format("not arrived within {:g} s; navigator is {}", options_.timeout_s,
+                                state.state().empty() ? "silent" : state.state());
+    } else {
+      leg.code = state.code();
+      leg.message = state.message();
+    }
+    return leg;
+  }
+
+  void say_say_(const Vec3& goal, std::size_t number, double elapsed_s) const {
+    const auto& state = record_.navigator().state();
+    say_(fmt::format("leg {} of {}: {:<8} {:5.1f} s, {:6.2f} m to go, tracking error {:5.1f} mm",
+                     number, p_.tour.goals_map.size(), state.empty() ? "asked" : state, elapsed_s,
+                     (record_.flown().back().state.position_map - goal).norm(),
+                     record_.errors().empty() ? 0.0
+                                              : 1e3 * record_.errors().back().position_error_m));
+  }
+
+  Result<flight_check::Verdict> judge() const {
+    const auto track = flown_track(record_);
+    if (track.empty()) return fail(ErrorCode::invalid_input, "nothing was flown");
+    auto check = flight_check::FlightCheck::open(
+        folder_ + "/world.bt", flight_check::Body{.radius_m = p_.config.map.radius_m});
+    if (!check) return check.error();
+    // The line across a gap may cut through what was flown around.
+    if (auto gaps = flight_check::check_gaps(track); !gaps) return gaps.error();
+    return check->judge(track);
+  }
+
+  const FlyOptions& options_;
+  const Preparation& p_;
+  const std::string& folder_;
+  const Say& say_;
+  FlightRecorder record_;
+  ChildVerb launch_;
+  std::function<bool()> recorded_;
+};
+
+Status check_domain_is_free(runtime::Context& context, runtime::Node& node, int domain) {
+  node.spin_some(0.3);  // others announce themselves in this time
+  for (const auto& participant : context.participants()) {
+    for (const auto& name : participant.nodes) {
+      if (!name.ends_with("/navigator")) continue;
+      return fail(ErrorCode::io_failed,
+                  fmt::format("domain {} is in use: {} of the process {} is in it. Stop that flight, "
+                              "or set ROS_DOMAIN_ID to another domain",
+                              domain, name, participant.name));
+    }
+  }
+  return success();
+}
+
+/// What a flight that never began leaves behind: nothing.
+class FolderGuard {
+ public:
+  FolderGuard(const std::string& folder, bool existed) : folder_(folder), existed_(existed) {}
+  ~FolderGuard() {
+    std::error_code ignored;
+    if (!kept_ && !existed_) std::filesystem::remove_all(folder_, ignored);
+  }
+  FolderGuard(const FolderGuard&) = delete;
+  FolderGuard& operator=(const FolderGuard&) = delete;
+  void keep() { kept_ = true; }
+
+ private:
+  std::string folder_;
+  bool existed_;
+  bool kept_ = false;
+};
+
+}  // namespace
+
+Result<Json> fly(const FlyOptions& options, const Preparation& p, const Say& say) {
+  const auto domain = private_domain();
+  if (!domain) return domain.error();
+  auto context_options = runtime::ContextOptions::from_environment();
+  context_options->domain = *domain;
+  auto context = runtime::Context::create(*context_options);
+  if (!context) return context.error();
+  runtime::Node node(**context, "goshawk_fly");
+  if (auto free = check_domain_is_free(**context, node, *domain); !free) return free.error();
+  const bool existed = !options.folder.empty() && std::filesystem::exists(options.folder);
+  const auto folder = make_flight_folder(options, p);
+  if (!folder) return folder.error();
+  FolderGuard guard(*folder, existed);
+  std::optional<ChildVerb> recorder;
+  if (options.record) {
+    auto started = start_recorder(*folder, *domain);
+    if (!started) return started.error();
+    recorder.emplace(*std::move(started));
+  }
+  auto launch =
+      start_launch(launch_arguments(options, p, *folder), *domain, *folder + "/logs/launch.log");
+  if (!launch) return launch.error();
+  Flight flight(options, p, *folder, say, node, *std::move(launch),
+                [&] { return !recorder || hears_planning(**context, recorder->pid()); });
+  const FlightOutcome outcome = flight.fly();
+  if (recorder) recorder->stop();
+  if (outcome.refusal) return *outcome.refusal;
+  guard.keep();
+  const Json summary = summary_json(outcome, flight.record(), *folder);
+  if (auto written = write_flight(*folder, summary, flight.record(), p.map, p.config.map.radius_m);
+      !written) {
+    return written.error();
+  }
+  return summary;
+}
+
+}  // namespace goshawk::cli

@@ -1,0 +1,134 @@
+#include "verbs/topic.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "goshawk/introspection/graph.hpp"
+
+namespace goshawk::cli {
+namespace {
+
+using introspection::Endpoint;
+using introspection::Session;
+using introspection::TopicInfo;
+
+int print_topics(double timeout_s, bool with_types, const Console& console) {
+  auto session = Session::open();
+  if (!session) return console.failed(session.error());
+  const auto topics = introspection::list_topics(**session, timeout_s);
+  const int domain = (*session)->context().domain();
+  if (topics.empty()) {
+    return console.not_done(
+        {ErrorCode::stage_silent, fmt::format("no topic was found in domain {}. Is something "
+                                              "running, with the same ROS_DOMAIN_ID?",
+                                              domain)});
+  }
+  Json json = {{"domain", domain}, {"topics", Json::array()}};
+  for (const auto& [name, topic] : topics) {
+    json["topics"].push_back({{"name", name},
+                              {"types", topic.types},
+                              {"publishers", topic.publishers},
+                              {"subscribers", topic.subscribers}});
+    if (console.json()) continue;
+    fmt::print("{}{}\n", name,
+               with_types ? fmt::format(" [{}]", fmt::join(topic.types, ", ")) : "");
+  }
+  if (console.json()) console.print_line(json);
+  return kDone;
+}
+
+const char* reliability(const Endpoint& e) {
+  return e.info.reliable ? "reliable" : "best_effort";
+}
+
+const char* durability(const Endpoint& e) {
+  return e.info.transient_local ? "transient_local" : "volatile";
+}
+
+Json endpoints_json(const std::vector<Endpoint>& endpoints) {
+  Json list = Json::array();
+  for (const auto& e : endpoints) {
+    list.push_back({{"nodes", e.nodes},
+                    {"participant", e.info.participant},
+                    {"type", e.info.type},
+                    {"reliability", reliability(e)},
+                    {"durability", durability(e)}});
+  }
+  return list;
+}
+
+void print_endpoints(const std::vector<Endpoint>& endpoints, const char* what) {
+  fmt::print("{}: {}\n", what, endpoints.size());
+  for (const auto& e : endpoints) {
+    fmt::print("  {}  ({}, {})\n",
+               e.nodes.empty() ? "a process that names no node"
+                               : fmt::format("{}", fmt::join(e.nodes, ", ")),
+               reliability(e), durability(e));
+  }
+}
+
+int print_topic(const std::string& topic, double timeout_s, const Console& console) {
+  auto session = Session::open();
+  if (!session) return console.failed(session.error());
+  const auto info = introspection::topic_info(**session, topic, timeout_s);
+  if (!info) return console.failed(info.error());
+  if (console.json()) {
+    console.print_line({{"name", info->name},
+                        {"types", info->types},
+                        {"publishers", endpoints_json(info->publishers)},
+                        {"subscribers", endpoints_json(info->subscribers)}});
+    return kDone;
+  }
+  fmt::print("Topic: {}\nType: {}\n", info->name, fmt::join(info->types, ", "));
+  print_endpoints(info->publishers, "Publishers");
+  print_endpoints(info->subscribers, "Subscribers");
+  std::fflush(stdout);
+  if (info->types.size() > 1) {
+    console.say("this topic has several types: their endpoints do not hear each other");
+  }
+  return kDone;
+}
+
+}  // namespace
+
+void add_timeout(const Verb& verb, double& timeout_s) {
+  verb->add_option("--timeout", timeout_s, "[s] longest wait for something to be there")
+      ->check(CLI::Range(0.0, 86400.0))
+      ->capture_default_str();
+}
+
+void add_topic_list(const Verb& topic) {
+  const Verb verb = topic.word("list", "the topics of the domain");
+  struct Options {
+    bool with_types = false;
+    double timeout_s = 2.0;
+  };
+  auto o = std::make_shared<Options>();
+  verb->add_flag("-t,--show-types", o->with_types, "with their types");
+  add_timeout(verb, o->timeout_s);
+  verb.runs([o](const Console& console) { return print_topics(o->timeout_s, o->with_types, console); });
+}
+
+void add_topic_info(const Verb& topic) {
+  const Verb verb = topic.word("info", "who writes and reads a topic");
+  struct Options {
+    std::string topic;
+    double timeout_s = 2.0;
+  };
+  auto o = std::make_shared<Options>();
+  verb.completes(verb->add_option("topic", o->topic, "its name")->required(), topic_names);
+  add_timeout(verb, o->timeout_s);
+  verb->footer("Example:\n  goshawk topic info /map/voxels");
+  verb.runs([o](const Console& console) { return print_topic(o->topic, o->timeout_s, console); });
+}
+
+void add_topic(Program& program) {
+  const Verb topic = program.verb("topic", "look at topics, measure them, publish");
+  add_topic_list(topic);
+  add_topic_info(topic);
+  add_topic_echo(topic);
+  add_topic_meters(topic);
+  add_topic_pub(topic);
+}
+
+}  // namespace goshawk::cli

@@ -1,0 +1,39 @@
+#pragma once
+
+#include "planning/map_options.hpp"
+#include "program.hpp"
+
+/// The verbs of `goshawk`: each describes its options to the parser and runs.
+namespace goshawk::cli {
+
+void add_fly(Program& program);
+void add_plan(Program& program);
+void add_check(Program& program);
+void add_world(Program& program);
+void add_campaign(Program& program);
+void add_launch(Program& program);
+void add_place(Program& program);
+void add_view(Program& program);
+void add_run(Program& program);
+void add_bench(Program& program);
+void add_conform(Program& program);
+void add_record(Program& program);
+void add_replay(Program& program);
+void add_topic(Program& program);
+void add_node(Program& program);
+void add_param(Program& program);
+void add_doctor(Program& program);
+
+/// Options that several verbs share.
+void add_map_options(const Verb& verb, MapOptions& options);
+
+/// --timeout of verbs that look at the domain.
+void add_timeout(const Verb& verb, double& timeout_s);
+
+/// Completed words: installed components, installed launch files, topics and nodes of the domain.
+Words component_names(const Words& before);
+Words launch_files(const Words& before);
+Words topic_names(const Words& before);
+Words node_names(const Words& before);
+
+}  // namespace goshawk::cli

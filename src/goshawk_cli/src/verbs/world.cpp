@@ -1,0 +1,127 @@
+#include <fmt/format.h>
+
+#include "goshawk/core/inflation.hpp"
+#include "goshawk/map_server/map_file.hpp"
+#include "goshawk/map_server/octree.hpp"
+#include "goshawk/map_server/voxel_map.hpp"
+#include "goshawk/worlds/world.hpp"
+#include "json.hpp"
+#include "values.hpp"
+#include "verbs/verbs.hpp"
+
+namespace goshawk::cli {
+namespace {
+
+struct WorldOptions {
+  worlds::WorldSpec spec = worlds::default_world();
+  std::optional<Vec3> size_m;
+  std::optional<Vec3> origin_m;
+  std::vector<Vec3> keep_free;
+  std::string convert;
+  std::string output;
+};
+
+struct Made {
+  GridGeometry geometry;
+  BitGrid occupied;
+  BitGrid known;  // empty: all
+  std::string kind;
+};
+
+/// The default world keeps its start and goal free and is padded for them; another size has neither
+/// unless asked for.
+worlds::WorldSpec spec_of(const WorldOptions& o) {
+  worlds::WorldSpec spec = o.spec;
+  if (o.size_m || !o.keep_free.empty()) spec.keep_free = o.keep_free;
+  if (o.size_m) {
+    spec.size_m = *o.size_m;
+    spec.origin_m = Vec3::Zero();
+  }
+  if (o.origin_m) spec.origin_m = *o.origin_m;
+  return spec;
+}
+
+Result<Made> make(const WorldOptions& o) {
+  if (o.convert.empty()) {
+    auto world = worlds::make_world(spec_of(o));
+    if (!world) return world.error();
+    return Made{world->geometry, std::move(world->occupied), {}, o.spec.kind};
+  }
+  map_server::LoadOptions options;
+  options.resolution_m = o.spec.resolution_m;
+  auto source = map_server::load_map(o.convert, options);
+  if (!source) return source.error();
+  auto raw = map_server::voxelize(*source->tree);
+  if (!raw) return raw.error();
+  return Made{raw->geometry, std::move(raw->occupied), std::move(raw->known), source->format};
+}
+
+Json describe(const Made& made, const WorldOptions& o, double grown_ratio) {
+  const auto& g = made.geometry;
+  const double voxels = double(made.occupied.voxels());
+  Json object = ok_json();
+  object.update({{"file", o.output},
+                 {"kind", made.kind},
+                 {"seed", o.convert.empty() ? Json(o.spec.seed) : Json(nullptr)},
+                 {"resolution_m", g.resolution_m},
+                 {"size_voxels", {g.size.x, g.size.y, g.size.z}},
+                 {"origin_m", to_json(g.origin_map)},
+                 {"upper_m", to_json(g.upper_corner_map())},
+                 {"occupied_voxels", made.occupied.count()},
+                 {"occupied_ratio", double(made.occupied.count()) / voxels},
+                 {"inflation_m", o.spec.inflation_m},
+                 {"grown_ratio", grown_ratio}});
+  return object;
+}
+
+int run_world(const WorldOptions& o, const Console& console) {
+  const auto made = make(o);
+  if (!made) return console.failed(made.error());
+  const auto grown = inflate(made->occupied, o.spec.inflation_m, made->geometry.resolution_m);
+  if (!grown) return console.wrong_call(grown.error());
+  const auto saved = map_server::save_voxels(made->geometry, made->occupied, made->known, o.output);
+  if (!saved) return console.not_done(saved.error());
+  const double ratio = double(grown->count()) / double(grown->voxels());
+  if (console.json()) {
+    console.print(describe(*made, o, ratio));
+  } else {
+    fmt::print("{}: {} voxels of {:g} m, {} occupied, {:.1f} % blocked with an inflation of {:g} m\n",
+               o.output, to_text(made->geometry.size), made->geometry.resolution_m,
+               made->occupied.count(), 100.0 * ratio, o.spec.inflation_m);
+  }
+  return kDone;
+}
+
+}  // namespace
+
+void add_world(Program& program) {
+  const Verb verb = program.verb(
+      "world", "make a world from a few numbers, or convert a map; the same call, the same bytes");
+  auto o = std::make_shared<WorldOptions>();
+  verb->add_option("output", o->output, "file to write: .bt or .ot")->required();
+  auto* kind = verb->add_option("--kind", o->spec.kind, "boxes, forest, office or noise")
+                   ->capture_default_str();
+  verb.completes(kind, [](const Words&) { return worlds::world_kinds(); });
+  add_point(verb, "--size", o->size_m, "[m] (default: the padded 6 x 8 x 4 m world)");
+  add_point(verb, "--origin", o->origin_m, "[m] lower corner");
+  verb->add_option("--resolution", o->spec.resolution_m, "[m] voxel edge")->capture_default_str();
+  verb->add_option("--density", o->spec.density,
+                   "share that is blocked after inflation; noise: share of occupied voxels")
+      ->capture_default_str();
+  verb->add_option("--seed", o->spec.seed, "same seed, same world")
+      ->capture_default_str()
+      ->check(not_negative());
+  verb->add_option("--inflation", o->spec.inflation_m, "[m] inflation that --density refers to")
+      ->capture_default_str();
+  add_points(verb, "--keep-free", o->keep_free,
+             "[m] point that stays free after inflation; may repeat");
+  verb->add_option("--convert", o->convert,
+                   "convert this map instead: .bt, .ot, .pcd, .ply, .3dmap");
+  verb->footer(
+      "Examples:\n"
+      "  goshawk world forest.bt --kind forest --size 20,20,5 --density 0.2 --seed 7\n"
+      "  goshawk world office.bt --convert scan.pcd --resolution 0.1");
+  verb.runs([o](const Console& console) { return run_world(*o, console); });
+}
+
+}  // namespace goshawk::cli

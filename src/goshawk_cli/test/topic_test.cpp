@@ -1,0 +1,313 @@
+// The verbs as a process of their own against nodes in this process: real DDS on loopback, in a
+// domain that the process id picks.
+
+#include <gmock/gmock.h>
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "child.hpp"
+#include "goshawk/runtime/node.hpp"
+#include "goshawk_msgs.h"
+#include "std_msgs.h"
+
+namespace {
+
+using goshawk::runtime::Context;
+using goshawk::runtime::ContextOptions;
+using goshawk::runtime::Node;
+using goshawk::runtime::Qos;
+using testing::HasSubstr;
+using testing::StartsWith;
+using Json = nlohmann::json;
+using cli_test::Child;
+using cli_test::domain;
+using cli_test::find;
+using cli_test::Outcome;
+using cli_test::run;
+using cli_test::seconds_since;
+using cli_test::Steady;
+
+/// A domain in which a planner publishes a path every 20 ms, a map is latched, and a goal is read.
+class Verbs : public testing::Test {
+ protected:
+  void SetUp() override {
+    ContextOptions options;
+    options.domain = domain();
+    options.node_names = {"/uav1/planner"};
+    auto context = Context::create(options);
+    ASSERT_TRUE(context) << context.error().message;
+    context_ = *std::move(context);
+    goshawk::runtime::RosArgs args;
+    args.node_namespace = "/uav1";
+    node_ = std::make_unique<Node>(*context_, "planner", args);
+    path_ = node_->advertise<goshawk_msgs::msg::Path>("path", Qos::reliable_last());
+    map_ = node_->advertise<goshawk_msgs::msg::VoxelGrid>("map/voxels", Qos::latched());
+    node_->subscribe<std_msgs::msg::String>("goal", Qos::reliable_last(),
+                                            [this](const auto& message, const auto&) {
+                                              const std::lock_guard lock(mutex_);
+                                              goals_.push_back(message.data());
+                                            });
+    goshawk_msgs::msg::VoxelGrid map;
+    map.header().frame_id("map");
+    map.occupied().assign(100, 7);
+    ASSERT_TRUE(map_.publish(map));
+    node_->every(0.02, [this] {
+      goshawk_msgs::msg::Path path;
+      const auto now_ns = node_->now_ns();
+      path.header().stamp().sec(std::int32_t(now_ns / 1'000'000'000));
+      path.header().stamp().nanosec(std::uint32_t(now_ns % 1'000'000'000));
+      path.header().frame_id("map");
+      path.waypoints().resize(2);
+      path.waypoints()[1].x(1.5);
+      (void)path_.publish(path);
+    });
+    thread_ = std::thread([this] { node_->spin(); });
+  }
+  void TearDown() override {
+    if (!thread_.joinable()) return;
+    node_->stop();
+    thread_.join();
+  }
+  std::vector<std::string> goals() {
+    const std::lock_guard lock(mutex_);
+    return goals_;
+  }
+
+  std::unique_ptr<Context> context_;
+  std::unique_ptr<Node> node_;
+  goshawk::runtime::Publisher<goshawk_msgs::msg::Path> path_;
+  goshawk::runtime::Publisher<goshawk_msgs::msg::VoxelGrid> map_;
+  std::thread thread_;
+  std::mutex mutex_;
+  std::vector<std::string> goals_;
+};
+
+TEST_F(Verbs, ListsTopicsWithTypes) {
+  EXPECT_EQ(find({"topic", "list"}).out, "/uav1/goal\n/uav1/map/voxels\n/uav1/path\n");
+  const auto typed = find({"topic", "list", "-t"});
+  EXPECT_EQ(typed.status, 0) << typed.err;
+  EXPECT_THAT(typed.out, HasSubstr("/uav1/path [goshawk_msgs/msg/Path]\n"));
+  const Json json = Json::parse(find({"topic", "list", "--json"}).out);
+  EXPECT_EQ(json["domain"], domain());
+  ASSERT_EQ(json["topics"].size(), 3u);
+  EXPECT_EQ(json["topics"][2], Json::parse(R"({"name": "/uav1/path", "publishers": 1,
+      "subscribers": 0, "types": ["goshawk_msgs/msg/Path"]})"));
+}
+
+TEST_F(Verbs, TellsWhoWritesATopic) {
+  const Json json = Json::parse(find({"topic", "info", "uav1/map/voxels", "--json"}).out);
+  ASSERT_EQ(json["publishers"].size(), 1u);
+  EXPECT_EQ(json["publishers"][0]["nodes"], Json({"/uav1/planner"}));
+  EXPECT_EQ(json["publishers"][0]["durability"], "transient_local");
+  EXPECT_EQ(json["publishers"][0]["reliability"], "reliable");
+  EXPECT_THAT(find({"topic", "info", "/uav1/path"}).out,
+              HasSubstr("Publishers: 1\n  /uav1/planner  (reliable, volatile)"));
+}
+
+TEST_F(Verbs, EchoesMessages) {
+  const auto yaml = find({"topic", "echo", "/uav1/path", "--once"});
+  EXPECT_EQ(yaml.status, 0) << yaml.err;
+  EXPECT_THAT(yaml.out, StartsWith("header:\n  stamp:\n    sec: "));
+  EXPECT_THAT(yaml.out,
+              HasSubstr("\nwaypoints:\n  - x: 0.0\n    y: 0.0\n    z: 0.0\n  - x: 1.5\n"));
+  EXPECT_THAT(yaml.out, HasSubstr("\n---\n"));
+  const auto lines = find({"topic", "echo", "/uav1/path", "-n", "3", "--json"});
+  EXPECT_EQ(std::ranges::count(lines.out, '\n'), 3);
+  const Json first = Json::parse(lines.out.substr(0, lines.out.find('\n')));
+  EXPECT_EQ(first["waypoints"][1]["x"], 1.5);
+}
+
+TEST_F(Verbs, EchoesTheLatchedMapToALateComer) {
+  const auto map = find({"topic", "echo", "/uav1/map/voxels", "--once", "--json", "--no-arr"});
+  EXPECT_EQ(map.status, 0) << map.err;
+  EXPECT_EQ(Json::parse(map.out)["occupied"], "<100 elements>");
+}
+
+TEST_F(Verbs, MeasuresRateDelayAndBandwidth) {
+  const auto hz = find({"topic", "hz", "/uav1/path", "-n", "20", "--json"});
+  EXPECT_EQ(hz.status, 0) << hz.err;
+  const Json rate = Json::parse(hz.out.substr(0, hz.out.find('\n')));
+  EXPECT_GT(rate["rate_hz"], 0.0);
+  EXPECT_LE(rate["min_s"], rate["max_s"]);
+  const auto delay = find({"topic", "delay", "/uav1/path", "-n", "5", "--json"});
+  EXPECT_EQ(delay.status, 0) << delay.err;
+  EXPECT_GE(Json::parse(delay.out.substr(0, delay.out.find('\n')))["min_s"], 0.0);
+  const auto bw = find({"topic", "bw", "/uav1/path", "-n", "10", "--json"});
+  EXPECT_EQ(bw.status, 0) << bw.err;
+  const Json bytes = Json::parse(bw.out.substr(0, bw.out.find('\n')));
+  EXPECT_GT(bytes["bytes_per_s"], 0.0);
+  EXPECT_EQ(bytes["min_bytes"], bytes["max_bytes"]);
+}
+
+TEST_F(Verbs, DelayNeedsAHeader) {
+  const auto outcome = run({"topic", "delay", "/uav1/goal"});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("has no header"));
+}
+
+TEST_F(Verbs, PublishesJsonAndYaml) {
+  const auto once =
+      find({"topic", "pub", "/uav1/goal", "std_msgs/String", "{\"data\": \"a\"}", "--once"});
+  EXPECT_EQ(once.status, 0) << once.err;
+  EXPECT_EQ(goals(), std::vector<std::string>{"a"});
+  const auto thrice = find({"topic", "pub", "/uav1/goal", "std_msgs/msg/String", "data: 'b'", "-r",
+                            "100", "-n", "3", "--json"});
+  EXPECT_EQ(thrice.status, 0) << thrice.err;
+  EXPECT_EQ(goals(), (std::vector<std::string>{"a", "b", "b", "b"}));
+  EXPECT_EQ(Json::parse(thrice.out)["published"], 3);
+}
+
+TEST_F(Verbs, PublishesAMessageALineFromStandardInput) {
+  Child child({"topic", "pub", "/uav1/goal", "std_msgs/String", "-", "--json", "--timeout", "30"},
+              domain(), "{\"data\": \"a\"}\n\ndata: b\n{data: 'the last line needs no end'}");
+  const auto all = child.finish();
+  EXPECT_EQ(all.status, 0) << all.err;
+  EXPECT_EQ(goals(), (std::vector<std::string>{"a", "b", "the last line needs no end"}));
+  EXPECT_EQ(std::ranges::count(all.out, '\n'), 3);
+  EXPECT_EQ(Json::parse(all.out.substr(all.out.find('\n', all.out.find('\n') + 1)))["published"],
+            3);
+  Child wrong({"topic", "pub", "/uav1/goal", "std_msgs/String", "-", "--timeout", "30"}, domain(),
+              "{data: c}\n{dat: d}\n{data: e}\n");
+  const auto refused = wrong.finish();
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err, HasSubstr("did you mean data?"));
+  EXPECT_EQ(goals().size(), 4u) << "those before the wrong one, and none behind it";
+}
+
+TEST_F(Verbs, PublishesNothingUntilSoManyRead) {
+  const auto few = run({"topic", "pub", "/uav1/goal", "std_msgs/String", "{data: d}", "--once",
+                        "-w", "2", "--timeout", "1"});
+  EXPECT_EQ(few.status, 1);
+  EXPECT_THAT(few.err, HasSubstr("only 1 of 2 readers of /uav1/goal came"));
+  EXPECT_TRUE(goals().empty());
+}
+
+TEST_F(Verbs, ListsNodes) {
+  const auto list = find({"node", "list"});
+  EXPECT_EQ(list.status, 0) << list.err;
+  EXPECT_EQ(list.out, "/uav1/planner\n");
+  const Json json = Json::parse(find({"node", "list", "--json"}).out);
+  EXPECT_EQ(json["nodes"][0]["name"], "/uav1/planner");
+  EXPECT_EQ(json["nodes"][0]["process"], "goshawk_" + std::to_string(getpid()));
+}
+
+/// What is not there costs the whole timeout: a short one, and a longer one where the machine had
+/// not found the others by then.
+Outcome miss(const std::vector<std::string>& arguments) {
+  Outcome outcome;
+  for (const char* timeout_s : {"1", "4", "16"}) {
+    auto patient = arguments;
+    patient.insert(patient.end(), {"--timeout", timeout_s});
+    outcome = run(patient);
+    if (outcome.status == 2) break;
+  }
+  return outcome;
+}
+
+TEST_F(Verbs, NameTheNearestTopic) {
+  for (const char* verb : {"info", "hz"}) {
+    const auto outcome = miss({"topic", verb, "/uav1/pth"});
+    EXPECT_EQ(outcome.status, 2) << verb;
+    EXPECT_THAT(outcome.err, HasSubstr("did you mean /uav1/path?")) << verb;
+  }
+  const auto pub = miss({"topic", "pub", "/uav1/gaol", "std_msgs/String", "{}", "--once"});
+  EXPECT_EQ(pub.status, 2);
+  EXPECT_THAT(pub.err, HasSubstr("did you mean /uav1/goal?"));
+}
+
+TEST_F(Verbs, EndCleanlyOnCtrlC) {
+  for (const auto& verb : {std::vector<std::string>{"topic", "echo", "/uav1/path"},
+                           std::vector<std::string>{"topic", "hz", "/uav1/path"}}) {
+    Child child(verb);
+    child.wait_for_output();
+    child.interrupt();
+    EXPECT_EQ(child.finish().status, 0) << verb[1];
+  }
+}
+
+TEST_F(Verbs, SayWhenNoMessageComes) {
+  const auto outcome = run({"topic", "echo", "/uav1/goal", "--once", "--timeout", "0.5"});
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("no message came on /uav1/goal within 0.5 s"));
+}
+
+// Nobody is in this domain.
+int empty_domain() {
+  static const int held = goshawk::runtime::hold_private_domain();
+  return held;
+}
+
+TEST(VerbsAlone, NeverHangWhereNothingIs) {
+  for (const auto& verb : {std::vector<std::string>{"topic", "list"},
+                           {"topic", "info", "/a"},
+                           {"topic", "echo", "/a"},
+                           {"topic", "hz", "/a"},
+                           {"node", "list"},
+                           {"topic", "pub", "/a", "std_msgs/msg/String", "{}", "--once"}}) {
+    auto arguments = verb;
+    arguments.insert(arguments.end(), {"--timeout", "0.3"});
+    const auto outcome = run(arguments, empty_domain());
+    EXPECT_EQ(outcome.status, 1) << verb[1] << outcome.err;
+    EXPECT_FALSE(outcome.err.empty());
+  }
+}
+
+TEST(VerbsAlone, NameWhatIsWrongInACall) {
+  const auto expect = [](std::vector<std::string> arguments, const char* sentence) {
+    const auto outcome = run(arguments, empty_domain());
+    EXPECT_EQ(outcome.status, 2) << arguments[1];
+    EXPECT_THAT(outcome.err, HasSubstr(sentence));
+    EXPECT_THAT(outcome.out, testing::IsEmpty());
+  };
+  expect({"topic", "ecko", "/a"}, "did you mean echo?");
+  expect({"topic"}, "a verb is missing: goshawk topic list | info | echo");
+  expect({"topic", "echo"}, "topic is required");
+  expect({"topic", "echo", "/a b"}, "is not a name");
+  expect({"topic", "echo", "/a", "-n", "0"}, "-n");
+  expect({"topic", "list", "--timeout", "-1"}, "--timeout");
+  expect({"topic", "pub", "/a", "std_msgs/msg/Strin", "{}"}, "did you mean std_msgs/msg/String?");
+  expect({"topic", "pub", "/a", "std_msgs/msg/String", "{dat: 1}"}, "did you mean data?");
+  expect({"topic", "pub", "/a", "std_msgs/msg/String", "{data: 1}"}, "quote it");
+  expect({"topic", "pub", "/a", "std_msgs/msg/String", "{data: [}"}, "neither JSON nor YAML");
+  expect({"node", "lst"}, "did you mean list?");
+  expect({"param", "describe", "no_such_component"}, "no component 'no_such_component'");
+}
+
+TEST(VerbsAlone, FailAsJsonWhereThatIsAskedFor) {
+  for (const auto& [arguments, status] :
+       {std::pair{std::vector<std::string>{"topic", "list"}, 1},
+        {{"topic", "echo", "/a", "--once"}, 1},
+        {{"topic", "echo", "/a b"}, 2},
+        {{"topic", "hz"}, 2},
+        {{"node", "list"}, 1},
+        {{"node", "lst"}, 2},
+        {{"param", "get", "/a"}, 1},
+        {{"param", "describe", "no_such_component"}, 2}}) {
+    auto call = arguments;
+    call.emplace_back("--json");
+    if (status == 1) call.insert(call.end(), {"--timeout", "0.3"});
+    const auto outcome = run(call, empty_domain());
+    EXPECT_EQ(outcome.status, status) << outcome.out;
+    const Json json = Json::parse(outcome.out);
+    EXPECT_EQ(json["ok"], false);
+    EXPECT_FALSE(json["code"].get<std::string>().empty());
+    EXPECT_FALSE(json["message"].get<std::string>().empty());
+    EXPECT_THAT(outcome.err, testing::IsEmpty());
+  }
+}
+
+TEST(VerbsAlone, RefuseADomainThatIsNone) {
+  const auto outcome = run({"topic", "list"}, 233);
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("from 0 to 232"));
+}
+
+TEST(VerbsAlone, HelpIsNoFault) {
+  const auto outcome = run({"topic", "echo", "--help"}, empty_domain());
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.out, HasSubstr("--no-arr"));
+}
+
+}  // namespace

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "goshawk/runtime/context.hpp"
+
+namespace goshawk::introspection {
+
+enum class Level {
+  fine,     // nothing to do
+  note,     // worth knowing
+  warning,  // works, but not well
+  fault,    // does not work
+};
+
+/// One thing that was looked at; unless it is fine, why it matters and what mends it.
+struct Finding {
+  std::string about;  // "loopback", "topic /path"
+  Level level = Level::fine;
+  std::string message;    // what is
+  std::string why = "";   // it matters
+  std::string mend = "";  // what to do
+};
+
+std::string to_string(Level level);
+
+/// Looks at the machine, the settings and the domain.
+/// @param timeout_s longest wait for others in the domain
+std::vector<Finding> examine(double timeout_s);
+
+/// The machine and its settings: cores, loopback, socket buffers, shared memory, disk, priorities.
+std::vector<Finding> check_machine();
+
+/// The environment: domain, interfaces, profile file.
+std::vector<Finding> check_environment();
+
+/// Goshawk's version, those of what it stands on, as compiled and as loaded, and the viewer's
+/// browser.
+std::vector<Finding> check_versions();
+
+/// @param compiled "2.9.1", empty: not known @param loaded the file that the loader took, such as
+/// ".../libfastrtps.so.2.9.1", empty: not loaded here
+Finding compare_versions(const std::string& name, const std::string& compiled,
+                         const std::string& loaded);
+
+/// Whether those who write and read a topic can hear each other, whether names are unique and
+/// versions the same. Pure: of what was discovered.
+std::vector<Finding> check_topics(const std::vector<runtime::ParticipantInfo>& participants,
+                                  const std::vector<runtime::EndpointInfo>& endpoints);
+
+/// Domains with processes on this machine, by the UDP ports that are in use.
+/// @param udp_table the content of /proc/net/udp
+std::vector<int> domains_in_use(const std::string& udp_table);
+
+/// Sockets in use: port to inode, of /proc/net/udp, or of /proc/net/tcp where it listens.
+std::map<int, long> ports_in_use(const std::string& table);
+
+/// UDP ports of the domain that a program holds which is no participant: one that has a user's
+/// port, but not the port of discovery that belongs to it.
+std::vector<int> stolen_ports(const std::map<int, long>& udp_ports, int domain);
+
+/// What stands in the way of this domain's ports, and of the viewer's.
+/// @param bridge_runs a viewer_bridge is in the domain: its port is rightly taken
+std::vector<Finding> check_ports(int domain, bool bridge_runs);
+
+/// @param first, last of the ports that the system hands out to programs that ask for any
+Finding check_port_range(int domain, int first, int last);
+
+/// How the machine's clock stands, and whether it was set between two looks at it.
+class ClockWatch {
+ public:
+  ClockWatch();
+  /// @return what holds now, seen from construction on
+  std::vector<Finding> findings() const;
+
+ private:
+  double offset_s_;
+};
+
+/// @param jump_s [s] by how much the clock was set while it was watched
+Finding check_clock_jump(double jump_s);
+
+/// @param ages_s [s] of a topic's messages when they came; at least one
+Finding check_stamps(const std::string& topic, const std::vector<double>& ages_s);
+
+}  // namespace goshawk::introspection

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "goshawk/introspection/session.hpp"
+
+namespace goshawk::introspection {
+
+struct NodeInfo {
+  std::string name;     // full
+  std::string process;  // as its participant calls itself
+};
+
+/// The nodes of the domain, by name, and processes that name none.
+struct NodeList {
+  std::vector<NodeInfo> nodes;
+  int unnamed_participants = 0;
+};
+NodeList list_nodes(Session& session, double timeout_s);
+
+struct TopicSummary {
+  std::set<std::string> types;
+  int publishers = 0;
+  int subscribers = 0;
+};
+
+/// The topics of the domain, by name.
+std::map<std::string, TopicSummary> list_topics(Session& session, double timeout_s);
+
+/// One who writes or reads a topic.
+struct Endpoint {
+  std::vector<std::string> nodes;  // of its process
+  runtime::EndpointInfo info;
+};
+
+struct TopicInfo {
+  std::string name;
+  std::set<std::string> types;
+  std::vector<Endpoint> publishers;
+  std::vector<Endpoint> subscribers;
+};
+
+/// @return invalid_parameter or stage_silent if the topic is not there within timeout_s
+Result<TopicInfo> topic_info(Session& session, const std::string& topic, double timeout_s);
+
+}  // namespace goshawk::introspection

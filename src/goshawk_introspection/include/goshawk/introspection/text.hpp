@@ -1,0 +1,23 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "goshawk/core/result.hpp"
+
+namespace goshawk::introspection {
+
+/// What a user typed behind `topic pub`: JSON, or YAML of which JSON is a part.
+/// @return invalid_input if it is neither
+Result<nlohmann::ordered_json> parse_json_or_yaml(const std::string& text);
+
+/// As `ros2 topic echo` shows it: block style, lists of numbers in one line.
+std::string to_yaml(const nlohmann::ordered_json& json);
+
+/// One line; bytes that are not UTF-8 are replaced.
+std::string to_line(const nlohmann::ordered_json& json);
+
+/// Lists of more than a few elements become "<N elements>".
+void shorten_arrays(nlohmann::ordered_json& json);
+
+}  // namespace goshawk::introspection

@@ -1,0 +1,101 @@
+#include "goshawk/introspection/doctor.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include "goshawk/conversions/geometry.hpp"
+#include "goshawk/introspection/session.hpp"
+#include "nav_msgs.h"
+
+namespace goshawk::introspection {
+namespace {
+
+constexpr std::size_t kStamps = 20;  // messages whose age is looked at
+
+void add(std::vector<Finding>& all, std::vector<Finding> more) {
+  std::ranges::move(more, std::back_inserter(all));
+}
+
+// Who is here; and where nobody is, in which other domains of this machine somebody is.
+Finding company(const std::vector<runtime::ParticipantInfo>& participants, int domain) {
+  if (!participants.empty()) {
+    std::string nodes;
+    for (const auto& p : participants) {
+      for (const auto& node : p.nodes) nodes += (nodes.empty() ? "" : ", ") + node;
+    }
+    return {"domain " + std::to_string(domain), Level::fine,
+            std::to_string(participants.size()) + " processes" +
+                (nodes.empty() ? "" : ", with the nodes " + nodes)};
+  }
+  std::stringstream table;
+  table << std::ifstream("/proc/net/udp").rdbuf();
+  std::string others;
+  for (const int d : domains_in_use(table.str())) {
+    if (d != domain) others += (others.empty() ? "" : ", ") + std::to_string(d);
+  }
+  return {"domain " + std::to_string(domain), Level::note,
+          others.empty() ? "nobody is here, nor in another domain of this machine"
+                         : "nobody is here, but there is in " + others,
+          "what is not in this domain is neither seen nor heard",
+          others.empty() ? "start something: goshawk launch flight"
+                         : "set ROS_DOMAIN_ID to look there"};
+}
+
+// How old odometry is when it comes: clocks of two machines that differ show in it.
+std::vector<Finding> check_odometry(Session& session, double timeout_s) {
+  const auto endpoints = session.context().endpoints();
+  const auto has = [&](const auto& wanted) { return std::ranges::any_of(endpoints, wanted); };
+  // Simulated time is no clock of a machine.
+  if (has([](const auto& e) { return e.writer && e.topic == "/clock"; })) return {};
+  std::map<std::string, std::vector<double>> ages_s;
+  for (const auto& e : endpoints) {
+    if (!e.writer || e.type != "nav_msgs/msg/Odometry" || ages_s.contains(e.topic)) continue;
+    session.node().subscribe<nav_msgs::msg::Odometry>(
+        e.topic, runtime::Qos::best_effort(),
+        [&ages = ages_s[e.topic]](const auto& m, const runtime::MessageInfo& info) {
+          ages.push_back(1e-9 * double(info.received_ns - conversions::to_ns(m.header().stamp())));
+        });
+  }
+  const auto enough = [&] {
+    return std::ranges::all_of(ages_s, [](const auto& a) { return a.second.size() >= kStamps; });
+  };
+  session.wait_for(timeout_s, enough);
+  std::vector<Finding> findings;
+  for (const auto& [topic, ages] : ages_s) {
+    if (!ages.empty()) findings.push_back(check_stamps(topic, ages));
+  }
+  return findings;
+}
+
+bool has_node(const runtime::Context& context, const std::string& name) {
+  return std::ranges::any_of(context.participants(), [&](const auto& p) {
+    return std::ranges::any_of(p.nodes, [&](const auto& n) { return n.ends_with("/" + name); });
+  });
+}
+
+}  // namespace
+
+std::vector<Finding> examine(double timeout_s) {
+  const ClockWatch clock;
+  std::vector<Finding> findings = check_machine();
+  add(findings, check_versions());
+  add(findings, check_environment());
+  auto session = Session::open();
+  if (!session) {
+    findings.push_back({"domain", Level::fault, session.error().message,
+                        "no stage can join it either", "as the sentence says"});
+    return findings;
+  }
+  (*session)->settle(timeout_s);
+  auto& context = (*session)->context();
+  add(findings, check_ports(context.domain(), has_node(context, "viewer_bridge")));
+  findings.push_back(company(context.participants(), context.domain()));
+  add(findings, check_topics(context.participants(), context.endpoints()));
+  add(findings, check_odometry(**session, timeout_s));
+  add(findings, clock.findings());
+  return findings;
+}
+
+}  // namespace goshawk::introspection

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <mutex>
+
+namespace goshawk::runtime::wire {
+
+/// Who sends from which port of 127.0.0.1.
+///
+/// A Fast DDS participant sends from one port all its life, and no other process can send from that
+/// port while it lives. So a datagram that names a participant, but comes from another port, is
+/// forged: it would end that participant's topics, silence a reader, or pass as its data.
+/// Safe to call from several threads.
+class SenderTable {
+ public:
+  using Prefix = std::array<std::byte, 12>;  // of a participant's GUID
+
+  /// @return false if the participant was heard from another port before
+  bool admits(const Prefix& participant, std::uint16_t port);
+
+  std::size_t size() const;  // at most one a port
+
+ private:
+  mutable std::mutex mutex_;
+  std::map<Prefix, std::uint16_t> port_of_;
+  std::map<std::uint16_t, Prefix> participant_at_;
+};
+
+}  // namespace goshawk::runtime::wire
