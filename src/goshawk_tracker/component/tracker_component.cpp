@@ -115,130 +115,114 @@ class TrackerComponent : public Component {
     accept(m, start_ns, timing);
   }
 
-  accept(m, start_ns, timing);
-}
-
   void accept(const msg::CommittedTrajectory& m, std::int64_t start_ns, Timing timing) {
-  const std::uint64_t id = m.nominal().request().id();
-  const auto received = conversions::from_msg(m);
-  if (!received) return reporter_.failed(id, received.error(), timing);
-  const auto& last = received->stop() ? received->stop()->trajectory : received->nominal();
-  CommittedTrajectory committed{.id = id,
-                                .trajectory = received->flown(),
-                                .polytopes = received->flown_polytopes(),
-                                .limits = received->nominal().limits(),
-                                .start = received->nominal().start(),
-                                .goal = last.goal(),
-                                .start_time_ns = start_ns,
-                                .yaw_rad = received->yaw_rad()};
-  if (const auto& curve = received->yaw_curve()) {
-    committed.yaw_step_s = curve->step_s;
-    committed.yaw_points_rad = curve->points_rad;
+    const std::uint64_t id = m.nominal().request().id();
+    auto received = conversions::from_msg(m);
+    if (!received) return reporter_.failed(id, received.error(), timing);
+    const auto [status, compute_ns] = timed(
+        [&] { return tracker_.accept(*std::move(received), start_ns, node_.monotonic_ns()); });
+    timing.compute_ns = compute_ns;
+    if (!status) return reporter_.failed(id, status.error(), timing);
+    accepted_ = timing;
+    reporter_.answered(id, timing);
   }
-  const auto [status, compute_ns] =
-      timed([&] { return tracker_.accept(std::move(committed), node_.monotonic_ns()); });
-  timing.compute_ns = compute_ns;
-  if (!status) return reporter_.failed(id, status.error(), timing);
-  accepted_ = timing;
-  reporter_.answered(id, timing);
-}
 
-void on_odometry(const nav_msgs::msg::Odometry& m) {
-  const auto state = conversions::from_msg(m);
-  if (!state) return reporter_.complain(state.error());
-  const std::int64_t sent_stamp_ns = conversions::to_ns(m.header().stamp());
-  const std::int64_t now_ns = node_.monotonic_ns();
-  const auto made = odometry_clock_.read(sent_stamp_ns, node_.now_ns(), now_ns);
-  if (std::abs(made.set_by_s) >= kClockStep_s) report_clock(made.set_by_s);
-  const auto [command, compute_ns] =
-      timed([&] { return tracker_.step(*state, made.time_ns, now_ns); });
-  count_step(compute_ns, now_ns);
-  if (!command) return reporter_.complain(command.error());
-  conversions::fill_msg(*command, command_message_);
-  command_message_.header(conversions::make_header(node_.now_ns()));
-  reporter_.send(commands_, command_message_);
-  if (waiting_) {
-    accept(waiting_->message, waiting_->start_ns, {});
-    waiting_.reset();
-  }
-  publish_state(sent_stamp_ns);
-}
-
-void report_clock(double set_by_s) {
-  reporter_.fault(fail(ErrorCode::clock_set,
-                       fmt::format("the clock that stamps odometry was set by {:.3g} s: its age "
-                                   "is taken to be as before",
-                                   set_by_s)));
-}
-
-// A second answer to the request, once its trajectory is flown: how well, and at what cost.
-void count_step(std::int64_t compute_ns, std::int64_t now_ns) {
-  const TrackingStatus status = tracker_.status();
-  if (status.mode == Mode::follow && status.trajectory_id != steps_.id()) {
-    steps_.begin(status.trajectory_id);
-  }
-  if (steps_.id() == 0) return;
-  steps_.add(compute_ns, now_ns);
-  if (status.mode != Mode::hold || status.lost_trajectory_id != 0) return;
-  reporter_.answered(steps_.id(),
-                     {.wire_ns = accepted_.wire_ns, .compute_ns = steps_.mean_compute_ns()},
-                     {{"rms_error_m", status.rms_error_m},
-                      {"max_error_m", status.max_error_m},
-                      {"longest_step_us", steps_.longest_compute_us()},
-                      {"jitter_ms", steps_.jitter_ms()},
-                      {"longest_gap_ms", steps_.longest_gap_ms()}});
-  steps_.begin(0);
-}
-
-// What must be said when odometry or the navigator are silent.
-void watch() {
-  tracker_.watch(node_.monotonic_ns());
-  // Not before: a large map would keep the control loop waiting while it is taken in.
-  if (tracker_.needs_map() && !map_) {
-    map_.emplace(node_, reporter_,
-                 [this](const auto& grid) { tracker_.set_map(grid, node_.monotonic_ns()); });
-  }
-  report_fault(tracker_.status());
-}
-
-// Once each; what the moment alone is to blame for, once a second.
-void report_fault(const TrackingStatus& status) {
-  if (status.fault.code != ErrorCode::ok && status.fault.message != reported_) {
-    if (status.lost_trajectory_id != 0 || status.fault.code != ErrorCode::tracking_lost) {
-      reporter_.failed(status.lost_trajectory_id, status.fault);
-    } else {
-      reporter_.complain(status.fault);
+  void on_odometry(const nav_msgs::msg::Odometry& m) {
+    const auto state = conversions::from_msg(m);
+    if (!state) return reporter_.complain(state.error());
+    const std::int64_t sent_stamp_ns = conversions::to_ns(m.header().stamp());
+    const std::int64_t now_ns = node_.monotonic_ns();
+    const auto made = odometry_clock_.read(sent_stamp_ns, node_.now_ns(), now_ns);
+    if (std::abs(made.set_by_s) >= kClockStep_s) report_clock(made.set_by_s);
+    const auto [command, compute_ns] =
+        timed([&] { return tracker_.step(*state, made.time_ns, now_ns); });
+    count_step(compute_ns, now_ns);
+    if (!command) return reporter_.complain(command.error());
+    conversions::fill_msg(*command, command_message_);
+    command_message_.header(conversions::make_header(node_.now_ns()));
+    reporter_.send(commands_, command_message_);
+    if (waiting_) {
+      accept(waiting_->message, waiting_->start_ns, {});
+      waiting_.reset();
     }
+    publish_state(sent_stamp_ns);
   }
-  reported_ = status.fault.message;
-}
 
-void publish_state(std::int64_t stamp_ns) {
-  const TrackingStatus status = tracker_.status();
-  report_fault(status);
-  msg::TrackingState m;
-  m.header(conversions::make_header(stamp_ns));
-  m.mode(std::string(to_string(status.mode)));
-  m.request_id(status.trajectory_id);
-  m.time_in_trajectory(status.progress_s);
-  m.reference(conversions::to_point(status.reference.position));
-  m.position_error(status.error_m);
-  reporter_.send(states_, m);
-}
+  void report_clock(double set_by_s) {
+    reporter_.fault(fail(ErrorCode::clock_set,
+                         fmt::format("the clock that stamps odometry was set by {:.3g} s: its age "
+                                     "is taken to be as before",
+                                     set_by_s)));
+  }
 
-Node& node_;
-Config config_;
-Tracker tracker_;
-OdometryClock odometry_clock_;
-StageReporter reporter_;
-Publisher<msg::ThrustAttitude> commands_;
-Publisher<msg::TrackingState> states_;
-msg::ThrustAttitude command_message_;
-std::optional<MapSubscription> map_;
-std::optional<Commit> waiting_;
-StepStatistics steps_;
-Timing accepted_;       // of the newest trajectory that was
-std::string reported_;  // the newest fault's sentence
+  // A second answer to the request, once its trajectory is flown: how well, and at what cost.
+  void count_step(std::int64_t compute_ns, std::int64_t now_ns) {
+    const TrackingStatus status = tracker_.status();
+    if (status.mode == Mode::follow && status.trajectory_id != steps_.id()) {
+      steps_.begin(status.trajectory_id);
+    }
+    if (steps_.id() == 0) return;
+    steps_.add(compute_ns, now_ns);
+    if (status.mode != Mode::hold || status.lost_trajectory_id != 0) return;
+    reporter_.answered(steps_.id(),
+                       {.wire_ns = accepted_.wire_ns, .compute_ns = steps_.mean_compute_ns()},
+                       {{"rms_error_m", status.rms_error_m},
+                        {"max_error_m", status.max_error_m},
+                        {"longest_step_us", steps_.longest_compute_us()},
+                        {"jitter_ms", steps_.jitter_ms()},
+                        {"longest_gap_ms", steps_.longest_gap_ms()}});
+    steps_.begin(0);
+  }
+
+  // What must be said when odometry or the navigator are silent.
+  void watch() {
+    tracker_.watch(node_.monotonic_ns());
+    // Not before: a large map would keep the control loop waiting while it is taken in.
+    if (tracker_.needs_map() && !map_) {
+      map_.emplace(node_, reporter_,
+                   [this](const auto& grid) { tracker_.set_map(grid, node_.monotonic_ns()); });
+    }
+    report_fault(tracker_.status());
+  }
+
+  // Once each; what the moment alone is to blame for, once a second.
+  void report_fault(const TrackingStatus& status) {
+    if (status.fault.code != ErrorCode::ok && status.fault.message != reported_) {
+      if (status.lost_trajectory_id != 0 || status.fault.code != ErrorCode::tracking_lost) {
+        reporter_.failed(status.lost_trajectory_id, status.fault);
+      } else {
+        reporter_.complain(status.fault);
+      }
+    }
+    reported_ = status.fault.message;
+  }
+
+  void publish_state(std::int64_t stamp_ns) {
+    const TrackingStatus status = tracker_.status();
+    report_fault(status);
+    msg::TrackingState m;
+    m.header(conversions::make_header(stamp_ns));
+    m.mode(std::string(to_string(status.mode)));
+    m.request_id(status.trajectory_id);
+    m.time_in_trajectory(status.progress_s);
+    m.reference(conversions::to_point(status.reference.position));
+    m.position_error(status.error_m);
+    reporter_.send(states_, m);
+  }
+
+  Node& node_;
+  Config config_;
+  Tracker tracker_;
+  OdometryClock odometry_clock_;
+  StageReporter reporter_;
+  Publisher<msg::ThrustAttitude> commands_;
+  Publisher<msg::TrackingState> states_;
+  msg::ThrustAttitude command_message_;
+  std::optional<MapSubscription> map_;
+  std::optional<Commit> waiting_;
+  StepStatistics steps_;
+  Timing accepted_;       // of the newest trajectory that was
+  std::string reported_;  // the newest fault's sentence
 };
 
 }  // namespace

@@ -98,7 +98,7 @@ void Tracker::stop_where_it_is(const Vec3& acceleration_map, std::int64_t last_s
   std::optional<LeftPath> path;
   if (reference_.has_trajectory()) {
     path = LeftPath{
-        .trajectory = &reference_.committed().trajectory,
+        .trajectory = &reference_.committed().flown(),
         .from_s = std::max(0.0, reference_.progress_s(last_stamp_ns) - kSearchBefore_s),
         .to_s = std::min(reference_.duration_s(), reference_.progress_s(now_ns) + kSearchAfter_s)};
   }
@@ -106,11 +106,9 @@ void Tracker::stop_where_it_is(const Vec3& acceleration_map, std::int64_t last_s
                           .velocity = state_.velocity_map,
                           .acceleration = acceleration_map};
   const auto is_free = [](const BezierPiece&) { return false; };  // no map: the shortest stop
-  reference_.stop(plan_stop(vehicle, path,
-                            {.gentle_m_s2 = config_.brake_acceleration_m_s2,
-                             .hardest_m_s2 = config_.stop_acceleration_m_s2},
-                            is_free),
-                  stamp_ns_);
+  const StopLimits limits{.gentle_m_s2 = config_.brake_acceleration_m_s2,
+                          .hardest_m_s2 = config_.stop_acceleration_m_s2};
+  reference_.leave_by(plan_stop(vehicle, path, limits, is_free), stamp_ns_);
   landing_ = false;
 }
 
@@ -140,7 +138,7 @@ void Tracker::lose(const Error& why, std::int64_t since_ns) {
     return;
   }
   lost_ = why;
-  lost_id_ = rests ? queue_.front().id : followed_id();
+  lost_id_ = rests ? queue_.front().committed().id() : followed_id();
   queue_.clear();
   if (whereabouts_lost_ && !landing_) reference_.brake(since_ns, config_.brake_acceleration_m_s2);
 }

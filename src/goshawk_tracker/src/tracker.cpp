@@ -1,5 +1,7 @@
 #include "goshawk/tracker/tracker.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -47,22 +49,23 @@ Status Tracker::reconfigure(const Config& config) {
   return success();
 }
 
-Status Tracker::accept(CommittedTrajectory committed, std::int64_t now_ns) {
+Status Tracker::accept(CommittedTrajectory committed, std::int64_t start_ns, std::int64_t now_ns) {
   if (auto status = admit(committed, config_); !status) return status;
-  if (auto status = check_start(committed, now_ns); !status) return status;
-  std::erase_if(queue_, [&](const CommittedTrajectory& queued) {
-    return queued.start_time_ns >= committed.start_time_ns;
-  });
-  queue_.push_back(std::move(committed));
+  auto candidate = Reference::follow(
+      std::make_shared<const CommittedTrajectory>(std::move(committed)), start_ns);
+  if (auto status = check_start(candidate, now_ns); !status) return status;
+  std::erase_if(queue_, [&](const Reference& queued) { return queued.start_ns() >= start_ns; });
+  queue_.push_back(std::move(candidate));
   return success();
 }
 
-Status Tracker::check_start(const CommittedTrajectory& committed, std::int64_t now_ns) const {
+Status Tracker::check_start(const Reference& candidate, std::int64_t now_ns) const {
   const auto refuse = [&](ErrorCode code, const std::string& why) {
-    return fail(code, "trajectory " + std::to_string(committed.id) + " refused: " + why);
+    return fail(code, fmt::format("trajectory {} refused: {}", candidate.committed().id(), why));
   };
-  if (!within_bound(now_ns))
+  if (!within_bound(now_ns)) {
     return refuse(ErrorCode::invalid_input, "the current time is outside the supported range");
+  }
   if (!has_state_) {
     return refuse(ErrorCode::not_at_start, "there is no odometry yet to tell where the vehicle is");
   }
@@ -71,12 +74,11 @@ Status Tracker::check_start(const CommittedTrajectory& committed, std::int64_t n
                   "the newest odometry is " + number(seconds(stamp_ns_, now_ns)) +
                       " s old and does not tell where the vehicle is; plan again once it does");
   }
-  const Reference candidate = Reference::follow(committed);
-  const std::int64_t joins_ns = std::max(committed.start_time_ns, now_ns);
-  if (seconds(committed.start_time_ns, joins_ns) >= candidate.duration_s()) {
+  const std::int64_t joins_ns = std::max(candidate.start_ns(), now_ns);
+  if (seconds(candidate.start_ns(), joins_ns) >= candidate.duration_s()) {
     return refuse(ErrorCode::deadline_exceeded,
                   "it ended " +
-                      number(seconds(committed.start_time_ns, now_ns) - candidate.duration_s()) +
+                      number(seconds(candidate.start_ns(), now_ns) - candidate.duration_s()) +
                       " s ago; commit it with a later start");
   }
   const FlatState joint = candidate.at(joins_ns);
@@ -87,7 +89,7 @@ Status Tracker::check_start(const CommittedTrajectory& committed, std::int64_t n
   const FlatState present = reference_at(joins_ns);
   if (is_near(present.position, present.velocity)) return success();
   // Where the vehicle is now tells where it will be only when it joins now, or hovers.
-  const bool joins_now = committed.start_time_ns <= now_ns;
+  const bool joins_now = candidate.start_ns() <= now_ns;
   const Vec3 vehicle =
       state_.position_map +
       (joins_now ? std::clamp(seconds(stamp_ns_, now_ns), 0.0, config_.odometry_timeout_s) : 0.0) *
@@ -208,8 +210,8 @@ void Tracker::forget_errors() {
 }
 
 void Tracker::switch_trajectories(std::int64_t now_ns) {
-  while (!queue_.empty() && queue_.front().start_time_ns <= now_ns) {
-    reference_ = Reference::follow(std::move(queue_.front()));
+  while (!queue_.empty() && queue_.front().start_ns() <= now_ns) {
+    reference_ = std::move(queue_.front());
     queue_.erase(queue_.begin());
     lost_ = kNoFault;
     landing_ = false;
@@ -218,7 +220,7 @@ void Tracker::switch_trajectories(std::int64_t now_ns) {
 }
 
 std::uint64_t Tracker::followed_id() const {
-  return reference_.has_trajectory() ? reference_.committed().id : 0;
+  return reference_.has_trajectory() ? reference_.committed().id() : 0;
 }
 
 double Tracker::wanted_yaw(std::int64_t now_ns) const {
@@ -237,10 +239,9 @@ double Tracker::turn(std::int64_t now_ns) {
 }
 
 FlatState Tracker::reference_at(std::int64_t time_ns) const {
-  const auto next = std::find_if(queue_.rbegin(), queue_.rend(), [&](const auto& queued) {
-    return queued.start_time_ns <= time_ns;
-  });
-  return next == queue_.rend() ? reference_.at(time_ns) : Reference::follow(*next).at(time_ns);
+  const auto next = std::find_if(queue_.rbegin(), queue_.rend(),
+                                 [&](const auto& queued) { return queued.start_ns() <= time_ns; });
+  return next == queue_.rend() ? reference_.at(time_ns) : next->at(time_ns);
 }
 
 TrackingStatus Tracker::status() const {
@@ -248,8 +249,8 @@ TrackingStatus Tracker::status() const {
   if (!has_state_) return s;
   s.mode = landing_                      ? Mode::land
            : reference_.at_rest(now_ns_) ? Mode::hold
-           : reference_.braking()        ? Mode::brake
-                                         : Mode::follow;
+           : reference_.follows()        ? Mode::follow
+                                         : Mode::brake;
   for (const Error* fault : {&deserted_, &refused_, &stalled_, &lost_}) {
     if (fault->code != ErrorCode::ok) s.fault = *fault;
   }

@@ -55,7 +55,7 @@ void ClosedLoop::take(const simulator::Measurement& measured, std::int64_t now) 
   }
 }
 
-ClosedLoop::Errors ClosedLoop::fly(CommittedTrajectory committed, double rest_s) {
+ClosedLoop::Errors ClosedLoop::fly(Draft committed, double rest_s) {
   const auto accepted = tracker.accept(committed, vehicle.time_ns());
   EXPECT_TRUE(accepted) << accepted.error().message;
   const double duration = committed.trajectory.duration_s();

@@ -46,7 +46,7 @@ class ClosedLoop {
   /// Runs until the given time; `each` is called every millisecond.
   void run_until(std::int64_t end_ns, const std::function<void()>& each = {});
   /// Accepts the trajectory, flies it, and `rest_s` beyond its end.
-  Errors fly(CommittedTrajectory committed, double rest_s = 1.0);
+  Errors fly(Draft committed, double rest_s = 1.0);
 
   simulator::Quadrotor vehicle;
   Tracker tracker;

@@ -94,16 +94,16 @@ TEST_P(ClosedLoopTest, TurnsAlongACurveOfYaw) {
   loop.run_until(kSecond);
   auto committed = straight_line({3, 0, 1}, {3, 6, 2}, 6.0);
   committed.start_time_ns = loop.vehicle.time_ns();
-  committed.yaw_step_s = 0.05;
+  committed.yaw_curve = YawCurve{.step_s = 0.05, .points_rad = {}};
   for (int k = -1; k <= 120; ++k) {  // to and fro, at 0.8 rad/s at the most
-    committed.yaw_points_rad.push_back(0.8 * (1.0 - std::cos(0.05 * std::max(k, 0))));
+    committed.yaw_curve->points_rad.push_back(0.8 * (1.0 - std::cos(0.05 * std::max(k, 0))));
   }
   ASSERT_TRUE(loop.tracker.accept(committed, loop.vehicle.time_ns()));
   double worst = 0.0;
   loop.run_until(committed.start_time_ns + 6 * kSecond, [&] {
     const double t = double(loop.vehicle.time_ns() - committed.start_time_ns) * 1e-9;
-    worst =
-        std::max(worst, std::abs(yaw_of(loop.vehicle.state().q_map_base) - committed.yaw_at(t)));
+    worst = std::max(
+        worst, std::abs(yaw_of(loop.vehicle.state().q_map_base) - committed.yaw_curve->yaw_rad(t)));
   });
   RecordProperty("worst_yaw_error_rad", std::to_string(worst));
   EXPECT_LT(worst, 0.05);

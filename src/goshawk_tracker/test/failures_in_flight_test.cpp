@@ -9,7 +9,7 @@ namespace goshawk::tracker {
 namespace {
 
 // Ten metres along y, with 2 m/s in the middle.
-CommittedTrajectory ten_metres() {
+Draft ten_metres() {
   auto committed = straight_line({0, 0, 1}, {0, 10, 1}, 9.375);
   committed.start_time_ns = kSecond;
   return committed;
@@ -271,7 +271,7 @@ TEST(FailuresInFlight, AReplanInFlightIsFlownWithoutAStep) {
   Flight flight;
   auto& loop = flight.loop;
   const auto first = ten_metres();
-  CommittedTrajectory second;
+  Draft second;
   second.id = 2;
   second.start_time_ns = kSecond + 5 * kSecond;
   second.trajectory.pieces = {

@@ -51,7 +51,7 @@ struct Upset {
 
   Random random;
   ClosedLoop loop;
-  CommittedTrajectory committed;
+  Draft committed;
   double top_speed_m_s = 0.0;
   double off_path_m = 0.0;
   ErrorCode said = ErrorCode::ok;

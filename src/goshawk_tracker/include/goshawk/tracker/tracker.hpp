@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "goshawk/core/landing.hpp"
-#include "goshawk/tracker/committed_trajectory.hpp"
 #include "goshawk/tracker/position_controller.hpp"
 #include "goshawk/tracker/reference.hpp"
 
@@ -63,7 +62,12 @@ class Tracker {
   /// A refused trajectory changes nothing. Sentences name the trajectory and the reason.
   /// @return all of admit(); not_at_start: no odometry yet, or it does not pass the vehicle, nor
   ///         the present reference, within the start tolerances; deadline_exceeded: it has ended
-  Status accept(CommittedTrajectory committed, std::int64_t now_ns);
+  /// @param start_ns when it begins, on this clock
+  Status accept(CommittedTrajectory committed, std::int64_t start_ns, std::int64_t now_ns);
+  Status accept(CommittedTrajectory committed, std::int64_t now_ns) {
+    const std::int64_t start_ns = committed.start_time_ns();
+    return accept(std::move(committed), start_ns, now_ns);
+  }
 
   /// Stop on the path and hold there; what is queued is dropped. On a held point: nothing new.
   void brake(std::int64_t now_ns);
@@ -109,7 +113,7 @@ class Tracker {
   explicit Tracker(const Config& config);
   Status check_odometry(const RigidBodyState& state, std::int64_t stamp_ns,
                         std::int64_t now_ns) const;
-  Status check_start(const CommittedTrajectory& committed, std::int64_t now_ns) const;
+  Status check_start(const Reference& candidate, std::int64_t now_ns) const;
   FlatState reference_at(std::int64_t time_ns) const;
   void hold_here(const RigidBodyState& state);
   void take_in(const RigidBodyState& state, std::int64_t stamp_ns, std::int64_t now_ns);
@@ -136,7 +140,7 @@ class Tracker {
   Config config_;
   PositionController controller_;
   Reference reference_ = Reference::hold(Vec3::Zero());
-  std::vector<CommittedTrajectory> queue_;  // by start time
+  std::vector<Reference> queue_;  // by start time
 
   bool has_state_ = false;
   RigidBodyState state_;
