@@ -71,7 +71,8 @@ def check(plan):
     v_factor, a_factor, until = allowance(plan["start"], limits)
     worst = dict.fromkeys(["position", "velocity", "acceleration"], -math.inf)
     worst["jerk"] = -math.inf if limits["j_max"] > 0 else 0.0
-    worst["validity"] = 0.0 if all(always(p) for p in plan["polytopes"]) else -math.inf
+    used = [plan["polytopes"][p["polytope"]] for p in pieces]
+    worst["validity"] = 0.0 if all(always(p) for p in used) else -math.inf
     worst.update(dict.fromkeys(["continuity_position", "continuity_velocity", "continuity_acceleration"], 0.0))
 
     def note(family, value):

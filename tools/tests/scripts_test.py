@@ -132,6 +132,20 @@ class ScriptsTest(unittest.TestCase):
         self.assertIn("run as root: apt-get install cmake", result.stderr)
         self.assertEqual(self.calls(), [])
 
+    def test_the_parts_of_the_tests_are_all_packages_and_share_none(self):
+        whole = run(TOOLS / "test", "--list").stdout.split()
+        self.assertIn("goshawk_core", whole)
+        parts = [run(TOOLS / "test", "--part", f"{k}/4", "--list").stdout.split()
+                 for k in range(1, 5)]
+        self.assertEqual(sorted(sum(parts, [])), sorted(whole))
+        self.assertIn(run(TOOLS / "test", "--part", "day/4", "--list").stdout.split(), parts)
+
+    def test_a_part_that_does_not_exist_is_refused(self):
+        for part in ("0/4", "5/4", "4", "a/b", "1/0"):
+            result = run(TOOLS / "test", "--part", part, "--list")
+            self.assertEqual(result.returncode, 1, part)
+            self.assertIn("--part wants K/N", result.stderr)
+
     def test_test_and_build_refuse_an_option_without_its_value(self):
         for name in ("test", "build"):
             result = run(TOOLS / name, "--sanitize")

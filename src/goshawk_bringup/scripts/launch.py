@@ -19,6 +19,7 @@ from launch_file import WrongCall
 DONE, NOT_DONE, WRONG_CALL = 0, 1, 2
 RETRIES = 5     # starts after the first before a launch that begins gives up
 PERIOD_S = 0.05
+STAYS_S = 1.0   # a process that lives for so long runs
 
 
 class Failure(Exception):
@@ -61,9 +62,12 @@ class Stage:
     def __init__(self, program):
         self.name, self.essential = program.name, program.essential
         self.pid = None
+        self.since_s = 0.0      # monotonic time at which its start was seen
+        self.lives = False      # its end was not seen
+        self.runs = False       # it has lived for STAYS_S
+        self.has_run = False    # it, or one before
         self.how = ""           # how it ended last
-        self.fast_ends = 0      # since it last stayed up
-        self.has_run = False    # it stayed up once
+        self.fast_ends = 0      # in a row, none of which ran
 
 
 class Launch:
@@ -94,6 +98,7 @@ class Launch:
             how = supervisor.how_it_ended()
             for event, match in supervisor.events():
                 getattr(self, f"on_{event}")(match.groupdict())
+            self.look_who_runs()
             if how:
                 raise Failure("io_failed", f"supervisord ended ({how}), and all stages with it; its "
                               f"log: {self.logs}/supervisord.log")
@@ -102,21 +107,26 @@ class Launch:
     def on_spawned(self, match):
         stage = self.stages[match["name"]]
         before, stage.pid = stage.pid, int(match["pid"])
+        stage.since_s, stage.lives, stage.runs = time.monotonic(), True, False
         if before is not None:
             self.voice.say("restarted", stage.name, f"ended unexpectedly ({stage.how}), was started "
                            f"again as process {stage.pid}; its log: {self.log_of(stage)}")
 
-    def on_running(self, match):
-        stage = self.stages[match["name"]]
-        stage.has_run, stage.fast_ends = True, 0
-        self.voice.say("running", stage.name, f"running as process {stage.pid}")
+    def look_who_runs(self):
+        now_s = time.monotonic()
+        for stage in self.stages.values():
+            if (stage.lives and not stage.runs and now_s - stage.since_s > STAYS_S
+                    and supervision.is_alive(stage.pid)):
+                stage.runs = stage.has_run = True
+                stage.fast_ends = 0
+                self.voice.say("running", stage.name, f"running as process {stage.pid}")
         if not self.up and all(s.has_run for s in self.stages.values() if s.essential):
             self.up = True
             self.voice.say("up", text="every essential stage runs")
 
     def on_exited(self, match):
         stage = self.stages[match["name"]]
-        stage.how = match["how"]
+        stage.how, stage.lives = match["how"], False
         stage.fast_ends += 1
         self.judge(stage)
 

@@ -17,7 +17,6 @@ PR_SET_PDEATHSIG = 1
 
 SPAWNED = re.compile(r" INFO spawned: '(?P<name>[^']+)' with pid (?P<pid>\d+)$")
 EXITED = re.compile(r" (?:INFO|WARN) exited: (?P<name>\S+) \((?P<how>.+?)(?:; (?:not )?expected)?\)$")
-RUNNING = re.compile(r" INFO success: (?P<name>\S+) entered RUNNING state")
 FAULT = re.compile(r" INFO spawnerr: (?P<how>.*)$")
 
 
@@ -56,6 +55,15 @@ def stop_with_parent(parent=0):
         os.kill(os.getpid(), signal.SIGTERM)
 
 
+def is_alive(pid):
+    """Whether a process is there and has not ended."""
+    try:
+        with open(f"/proc/{pid}/stat", encoding="ascii", errors="replace") as file:
+            return file.read().rsplit(")", 1)[1].split()[0] not in "ZX"
+    except (OSError, IndexError):
+        return False
+
+
 def processes_of(token):
     """Ids of the processes that inherited this token: all that a launch started, however deep."""
     mark = f"{TOKEN}={token}".encode()
@@ -65,12 +73,9 @@ def processes_of(token):
             continue
         try:
             with open(f"/proc/{entry}/environ", "rb") as file:
-                if mark not in file.read().split(b"\0"):
-                    continue
-            with open(f"/proc/{entry}/stat", encoding="ascii", errors="replace") as file:
-                if file.read().rsplit(")", 1)[1].split()[0] != "Z":
+                if mark in file.read().split(b"\0") and is_alive(entry):
                     found.append(int(entry))
-        except (OSError, IndexError):
+        except OSError:
             continue  # it has ended, or belongs to another user
     return found
 
@@ -99,7 +104,8 @@ class Supervisor:
         self.log, self.rest = None, ""
 
     def events(self):
-        """What happened since the last call: ("spawned" | "exited" | "running" | "fault", match)"""
+        """What happened since the last call: ("spawned" | "exited" | "fault", match). What
+        supervisord calls RUNNING is left out: it says so of processes that have ended meanwhile."""
         if self.log is None:
             try:
                 self.log = open(os.path.join(self.logs, "supervisord.log"), encoding="utf-8",
@@ -110,8 +116,7 @@ class Supervisor:
         self.rest = lines.pop()  # not whole yet
         found = []
         for line in lines:
-            for event, pattern in (("spawned", SPAWNED), ("exited", EXITED), ("running", RUNNING),
-                                   ("fault", FAULT)):
+            for event, pattern in (("spawned", SPAWNED), ("exited", EXITED), ("fault", FAULT)):
                 match = pattern.search(line)
                 if match:
                     found.append((event, match))

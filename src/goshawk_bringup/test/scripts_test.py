@@ -154,9 +154,22 @@ class Supervised(Folder):
         self.assertIn("SIGSEGV", events["exited"]["how"])
         self.assertEqual(events["exited"]["name"], "p0")
 
+    def test_a_process_that_waits_to_be_reaped_is_not_alive(self):
+        child = subprocess.Popen(["sleep", "60"])
+        self.assertTrue(supervision.is_alive(child.pid))
+        child.kill()
+        deadline = time.monotonic() + 60.0
+        while supervision.is_alive(child.pid) and time.monotonic() < deadline:
+            time.sleep(0.01)
+        self.assertFalse(supervision.is_alive(child.pid))
+        child.wait()
+        self.assertFalse(supervision.is_alive(child.pid))
+
     def test_stop_ends_what_left_its_process_group_too(self):
         supervisor = self.supervisor(["/bin/bash", "-c", "setsid sleep 1000 & exec sleep 1000"])
-        self.until(supervisor, "running")
+        deadline = time.monotonic() + 60.0
+        while len(supervision.processes_of(supervisor.token)) < 3 and time.monotonic() < deadline:
+            time.sleep(0.05)
         self.assertGreaterEqual(len(supervision.processes_of(supervisor.token)), 3)
         self.assertEqual(supervisor.stop(), [])
         self.assertEqual(supervision.processes_of(supervisor.token), [])

@@ -212,6 +212,12 @@ int Program::refuse(const CLI::ParseError& error, bool json) const {
 }
 
 int Program::help(const Words& words) {
+  const Place place = place_of(words);
+  if (!place.positional.empty()) {
+    const Console console("help", json_);
+    return console.wrong_call(
+        {ErrorCode::invalid_input, about_stray(place.positional.front(), *place.app)});
+  }
   Words arguments = words;
   arguments.emplace_back("--help");
   app_.clear();

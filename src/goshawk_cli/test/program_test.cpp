@@ -114,6 +114,7 @@ TEST_F(ProgramTest, Helps) {
   EXPECT_EQ(help.status, kDone);
   EXPECT_THAT(help.out, AllOf(HasSubstr("goshawk fly"), HasSubstr("--goal"), HasSubstr("--json")));
   EXPECT_THAT(call({"--help"}).out, AllOf(HasSubstr("fly somewhere"), HasSubstr("topics")));
+  EXPECT_EQ(program_.help({"fyl"}), kWrongCall);
   const auto nothing = call({});
   EXPECT_EQ(nothing.status, kWrongCall);
   EXPECT_THAT(nothing.err, HasSubstr("fly somewhere"));

@@ -40,6 +40,9 @@ void add_bad_requests(Cases<Input>& cases, const Input& good) {
   add("an acceleration limit of zero", {"invalid_limits"}, [](auto& r) { r.limits().a_max(0.0); });
   add("a norm of limits that does not exist", {"invalid_limits", "invalid_input"},
       [](auto& r) { r.limits().norm(9); });
+  add("a rule for unknown space that does not exist", {"invalid_input"},
+      [](auto& r) { r.unknown(9); });
+  add("a start that looks nowhere", {"invalid_input"}, [](auto& r) { r.start_yaw(kNan); });
   add("a deadline that has passed", {"deadline_exceeded"}, [](auto& r) {
     r.header().stamp(conversions::to_stamp(1'000'000'000));
     r.deadline(1.0);

@@ -102,34 +102,54 @@ Vec3 derivative(const msg::BezierPiece& piece, int order, std::size_t j) {
   if (order == 0) return vec(c[j]);
   const double duration_s = piece.duration();
   if (order == 1) return 5.0 / duration_s * (vec(c[j + 1]) - vec(c[j]));
+  if (order == 3) {
+    return 60.0 / (duration_s * duration_s * duration_s) *
+           (vec(c[j + 3]) - 3.0 * vec(c[j + 2]) + 3.0 * vec(c[j + 1]) - vec(c[j]));
+  }
   return 20.0 / (duration_s * duration_s) * (vec(c[j + 2]) - 2.0 * vec(c[j + 1]) + vec(c[j]));
 }
 
-double size_of(const Vec3& v, int norm) {
-  return norm == 0 ? v.norm() : v.cwiseAbs().maxCoeff();
+/// How much of a limit a vector uses: 1 at the limit.
+double usage(const Vec3& v, int norm, double limit, double vertical) {
+  using namespace goshawk_msgs::msg::Limits_Constants;
+  if (norm == NORM_EUCLIDEAN) return v.norm() / limit;
+  if (norm == NORM_PER_AXIS) return v.cwiseAbs().maxCoeff() / limit;
+  return std::max(v.head<2>().norm() / limit,
+                  std::abs(v.z()) / (vertical > 0.0 ? vertical : limit));
 }
 
-std::string fault_of_piece(const msg::BezierPiece& piece, std::size_t k,
+std::string fault_of_piece(const msg::BezierPiece& piece, std::size_t k, double begin_s,
                            const std::vector<msg::Polytope>& polytopes, const msg::Limits& limits) {
   if (!(piece.duration() > 0.0)) return at("piece", k, "lasts [s]", piece.duration());
   if (piece.polytope() >= polytopes.size()) {
     return at("piece", k, "names a polytope that is not there", double(piece.polytope()));
   }
-  double position = -1.0, velocity = -1.0, acceleration = -1.0;
+  const msg::Polytope& home = polytopes[piece.polytope()];
+  double position = -1.0, velocity = 0.0, acceleration = 0.0, jerk = 0.0;
   for (std::size_t j = 0; j < 6; ++j) {
-    const double out = outside(polytopes[piece.polytope()], derivative(piece, 0, j));
-    position = std::max(position, out);
-    if (j < 5) velocity = std::max(velocity, size_of(derivative(piece, 1, j), limits.norm()));
-    if (j < 4) {
-      acceleration = std::max(acceleration, size_of(derivative(piece, 2, j), limits.norm()));
+    position = std::max(position, outside(home, derivative(piece, 0, j)));
+    if (j < 5) {
+      velocity = std::max(velocity, usage(derivative(piece, 1, j), limits.norm(), limits.v_max(),
+                                          limits.v_max_vertical()));
     }
+    if (j < 4) {
+      acceleration = std::max(acceleration, usage(derivative(piece, 2, j), limits.norm(),
+                                                  limits.a_max(), limits.a_max_vertical()));
+    }
+    if (j < 3) jerk = std::max(jerk, derivative(piece, 3, j).norm());
   }
   if (!(position <= kTolerance)) return at("piece", k, "leaves its polytope [m]", position);
-  if (!(velocity <= limits.v_max() + kTolerance)) return at("piece", k, "is too fast", velocity);
-  if (!(acceleration <= limits.a_max() + kTolerance)) {
+  if (!(velocity <= 1.0 + kTolerance)) return at("piece", k, "is too fast", velocity);
+  if (!(acceleration <= 1.0 + kTolerance)) {
     return at("piece", k, "accelerates too much", acceleration);
   }
-  return "";
+  if (limits.j_max() > 0.0 && !(jerk <= limits.j_max() + kTolerance)) {
+    return at("piece", k, "has too much jerk", jerk);
+  }
+  if (home.valid_from() == 0.0 && home.valid_until() == 0.0) return "";
+  const double by_s =
+      std::max(home.valid_from() - begin_s, begin_s + piece.duration() - home.valid_until());
+  return by_s <= kTolerance ? "" : at("piece", k, "outlasts its polytope [s]", by_s);
 }
 
 double state_error(const msg::FlatState& state, const msg::BezierPiece& piece, bool end) {
@@ -192,9 +212,13 @@ std::string fault_of(const msg::BezierTrajectory& t, const msg::Corridor& sent,
   if (t.pieces().empty()) return "it has no pieces";
   if (!(t.polytopes() == sent.polytopes())) return "its polytopes are not the corridor's";
   const auto& limits = sent.request().limits();
+  double begin_s = 0.0;
   for (std::size_t k = 0; k < t.pieces().size(); ++k) {
     const auto& piece = t.pieces()[k];
-    if (auto fault = fault_of_piece(piece, k, t.polytopes(), limits); !fault.empty()) return fault;
+    if (auto fault = fault_of_piece(piece, k, begin_s, t.polytopes(), limits); !fault.empty()) {
+      return fault;
+    }
+    begin_s += piece.duration();
     if (k == 0) continue;
     for (int order = 0; order < 3; ++order) {
       const double jump = (derivative(t.pieces()[k - 1], order, std::size_t(5 - order)) -

@@ -110,7 +110,11 @@ Certificate measure(const Trajectory& trajectory, std::span<const Polytope> poly
   constexpr double none = -std::numeric_limits<double>::infinity();
   Certificate c{.position_m = none, .velocity_m_s = none, .acceleration_m_s2 = none};
   if (limits.j_max_m_s3 > 0.0) c.jerk_m_s3 = none;
-  if (!std::ranges::all_of(polytopes, &Polytope::always_valid)) c.validity_s = none;
+  const auto always = [&](const BezierPiece& piece) {
+    const auto k = std::size_t(piece.polytope);
+    return k >= polytopes.size() || polytopes[k].always_valid();
+  };
+  if (!std::ranges::all_of(trajectory.pieces, always)) c.validity_s = none;
   const StartAllowance allowance = StartAllowance::of(start, limits);
   const BezierPiece* before = nullptr;
   double begin_s = 0.0;

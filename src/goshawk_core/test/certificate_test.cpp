@@ -249,6 +249,9 @@ TEST(Certificate, DoesNotHoldForAPieceThatOutlastsItsPolytope) {
   Random random(8);
   Plan plan = good_plan(random);
   EXPECT_EQ(plan.certificate().validity_s, 0.0) << "no polytope has an interval";
+  plan.polytopes.push_back(plan.polytopes[0]);
+  plan.polytopes.back().valid_until_s = 0.001;
+  EXPECT_EQ(plan.certificate().validity_s, 0.0) << "no piece is in the one that has";
   const double begin_s = plan.trajectory.pieces[0].duration_s;
   const double end_s = begin_s + plan.trajectory.pieces[1].duration_s;
   const auto with = [&](double from_s, double until_s) {

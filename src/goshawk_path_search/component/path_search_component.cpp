@@ -48,12 +48,7 @@ class PathSearchComponent : public Component {
     Timing timing{.wire_ns = wire_time_ns(m.header(), info)};
     const auto request = open_request(m, node_.now_ns(), reporter_, timing);
     if (!request) return;
-    std::vector<Vec3> goals_map = {request->goal.position};
-    goals_map.insert(goals_map.end(), request->other_goals_map.begin(),
-                     request->other_goals_map.end());
-    const PlanQuery query{
-        .start_map = request->start.position, .goals_map = goals_map, .stop = stop_of(*request)};
-    auto [path, compute_ns] = timed([&] { return search_.plan(query); });
+    auto [path, compute_ns] = timed([&] { return search_.plan(*request, stop_of(*request)); });
     timing.compute_ns = compute_ns;
     if (!path) return reporter_.failed(request->id, path.error(), timing);
     publish(m, *path, compute_ns);

@@ -104,6 +104,16 @@ Result<PlannedPath> PathSearch::plan(const PlanQuery& query) {
   return path;
 }
 
+Result<PlannedPath> PathSearch::plan(const PlanRequest& request, const StopSignal& stop) {
+  std::vector<Vec3> goals_map = {request.goal.position};
+  goals_map.insert(goals_map.end(), request.other_goals_map.begin(),
+                   request.other_goals_map.end());
+  return plan(PlanQuery{.start_map = request.start.position,
+                        .goals_map = goals_map,
+                        .stop = stop,
+                        .unknown = request.unknown});
+}
+
 Result<PlannedPath> PathSearch::plan(const Vec3& start_map, const Vec3& goal_map) {
   return plan(PlanQuery{.start_map = start_map, .goals_map = {&goal_map, 1}});
 }
@@ -112,7 +122,32 @@ Status PathSearch::plan(const Vec3& start_map, const Vec3& goal_map, PlannedPath
   return plan(PlanQuery{.start_map = start_map, .goals_map = {&goal_map, 1}}, path);
 }
 
+// The map as such a request sees it has a search of its own, which follows the map from then on.
+// @return nothing if the configuration does as well
+PathSearch* PathSearch::other_search(UnknownSpace unknown) {
+  if (unknown == UnknownSpace::as_configured || !given_map_) return nullptr;
+  const UnknownRule rule = unknown == UnknownSpace::blocked ? UnknownRule::blocked
+                           : unknown == UnknownSpace::free  ? UnknownRule::free
+                                                            : UnknownRule::costly;
+  const bool blocked_anyway = rule == UnknownRule::blocked && given_map_->unknown_is_occupied &&
+                              config_.unknown == UnknownRule::as_mapped;
+  if (rule == config_.unknown || blocked_anyway) return nullptr;
+  auto& other = others_[rule];
+  if (!other) {
+    Config config = config_;
+    config.unknown = rule;
+    other = std::make_unique<PathSearch>(create(config).value());
+  }
+  if (other->given_map_ != given_map_) other->set_map(given_map_);
+  return other.get();
+}
+
 Status PathSearch::plan(const PlanQuery& query, PlannedPath& path) {
+  if (PathSearch* other = other_search(query.unknown)) {
+    PlanQuery same = query;
+    same.unknown = UnknownSpace::as_configured;
+    return other->plan(same, path);
+  }
   if (!map_) return map_error_;
   path.cut_off = false;
   if (auto status = place(query); !status) return status;

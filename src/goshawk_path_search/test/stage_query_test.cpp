@@ -156,12 +156,18 @@ TEST(SearchBox, KeepsThePathInside) {
   EXPECT_EQ(stage(config, grid).plan(start, goal).code(), ErrorCode::map_empty);
 }
 
-TEST(UnknownSpace, IsFreeBlockedOrCostly) {
-  // A corridor of 12 x 3 x 1; the middle of the straight way is not measured.
+// A corridor of 12 x 3 x 1 that leaves unknown space free; the middle of the straight way is
+// not measured.
+std::shared_ptr<VoxelGrid> half_known_corridor() {
   auto grid = grid_of(BitGrid({12, 3, 1}, true));
   grid->known = BitGrid({12, 3, 1}, false, true);
   for (int x = 3; x < 9; ++x) grid->known.set({x, 1, 0}, false);
   grid->unknown_is_occupied = false;
+  return grid;
+}
+
+TEST(UnknownSpace, IsFreeBlockedOrCostly) {
+  const auto grid = half_known_corridor();
   const Vec3 start = grid->geometry.center({0, 1, 0}), goal = grid->geometry.center({11, 1, 0});
   const auto cost = [&](UnknownRule unknown) {
     Config config;
@@ -178,6 +184,65 @@ TEST(UnknownSpace, IsFreeBlockedOrCostly) {
   Config config;
   config.unknown = UnknownRule::costly;
   EXPECT_EQ(stage(config, grid).plan(start, goal).code(), ErrorCode::invalid_parameter);
+}
+
+TEST(UnknownSpace, IsTakenAsTheRequestSaysElseAsConfigured) {
+  const auto grid = half_known_corridor();
+  PlanRequest request;
+  request.start.position = grid->geometry.center({0, 1, 0});
+  request.goal.position = grid->geometry.center({11, 1, 0});
+  const double straight = 11.0, around = 9.0 + 2.0 * std::sqrt(2.0);
+  for (const UnknownRule configured : {UnknownRule::as_mapped, UnknownRule::blocked}) {
+    Config config;
+    config.unknown = configured;
+    config.unknown_weight = 0.1;
+    auto search = stage(config, grid);
+    const auto cost = [&](UnknownSpace unknown) {
+      request.unknown = unknown;
+      const auto path = search.plan(request);
+      return path.ok() ? path->cost / 0.2 : -1.0;
+    };
+    const bool blocks = configured == UnknownRule::blocked;
+    EXPECT_NEAR(cost(UnknownSpace::as_configured), blocks ? around : straight, 1e-12);
+    EXPECT_NEAR(cost(UnknownSpace::free), straight, 1e-12);
+    EXPECT_NEAR(cost(UnknownSpace::costly), straight + 0.6, 1e-12);
+    EXPECT_NEAR(cost(UnknownSpace::blocked), around, 1e-12);
+    EXPECT_NEAR(cost(UnknownSpace::as_configured), blocks ? around : straight, 1e-12)
+        << "a request does not change how the next one is taken";
+  }
+}
+
+TEST(UnknownSpace, OfARequestFollowsTheMap) {
+  const auto before = half_known_corridor();
+  auto search = stage({}, before);
+  PlanRequest request;
+  request.start.position = before->geometry.center({0, 1, 0});
+  request.goal.position = before->geometry.center({11, 1, 0});
+  request.unknown = UnknownSpace::blocked;
+  EXPECT_NEAR(search.plan(request)->cost / 0.2, 9.0 + 2.0 * std::sqrt(2.0), 1e-12);
+  auto measured = half_known_corridor();
+  measured->known = BitGrid({12, 3, 1}, false, true);
+  search.set_map(measured);
+  EXPECT_NEAR(search.plan(request)->cost / 0.2, 11.0, 1e-12);
+  auto closed = half_known_corridor();
+  closed->unknown_is_occupied = true;
+  search.set_map(closed);
+  request.unknown = UnknownSpace::free;
+  EXPECT_EQ(search.plan(request).code(), ErrorCode::invalid_parameter);
+}
+
+TEST(Request, IsSearchedToWhicheverGoalIsNearest) {
+  const auto grid = half_known_corridor();
+  auto search = stage({}, grid);
+  const auto at = [&](int x) { return grid->geometry.center({x, 1, 0}); };
+  PlanRequest request;
+  request.start.position = at(0);
+  request.goal.position = at(11);
+  request.other_goals_map = {at(6), at(3)};
+  const auto path = search.plan(request);
+  ASSERT_TRUE(path.ok()) << path.error().message;
+  EXPECT_EQ(path->goal, 2u);
+  EXPECT_EQ(path->waypoints_map.back(), request.other_goals_map[1]);
 }
 
 TEST(Weights, BendThePathAsTheyShould) {

@@ -104,7 +104,7 @@ static bool finite_state(const goshawk_msgs_msg_FlatState* s) {
   return true;
 }
 
-// What must be refused before any thought is given to it. @return whether the request is good
+// Refuses a bad request. @return whether it is good
 static bool check(dds_entity_t reports, const Request* r) {
   const goshawk_msgs_msg_Limits* l = &r->limits;
   const double asked_s = r->header.stamp.sec + 1e-9 * r->header.stamp.nanosec;
@@ -112,9 +112,13 @@ static bool check(dds_entity_t reports, const Request* r) {
   const char *code = "ok", *message = "";
   if (strcmp(r->header.frame_id, "map") != 0) {
     code = "wrong_frame", message = "the request must be in frame map";
-  } else if (!finite_state(&r->start) || !finite_state(&r->goal) || !isfinite(r->goal_yaw)) {
+  } else if (!finite_state(&r->start) || !finite_state(&r->goal) || !isfinite(r->goal_yaw) ||
+             !isfinite(r->start_yaw) || !isfinite(r->start_yaw_rate)) {
     code = "invalid_input", message = "a number of the start or the goal is not finite";
-  } else if (!(l->v_max > 0.0) || !(l->a_max > 0.0) || l->norm > 2) {
+  } else if (r->unknown > goshawk_msgs_msg_PlanRequest_Constants_UNKNOWN_COSTLY) {
+    code = "invalid_input", message = "unknown must be 0, 1, 2 or 3";
+  } else if (!(l->v_max > 0.0) || !(l->a_max > 0.0) ||
+             l->norm > goshawk_msgs_msg_Limits_Constants_NORM_HORIZONTAL_VERTICAL) {
     code = "invalid_limits", message = "limits must be above zero, their norm 0, 1 or 2";
   } else if (r->deadline > 0.0 && now_s > asked_s + r->deadline) {
     code = "deadline_exceeded", message = "the deadline had passed when the request came";

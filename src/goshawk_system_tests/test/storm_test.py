@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Mutated datagrams to every stage in flight. By hand, with more of them:
 
-    STORM_DATAGRAMS=100000 STORM_RATE=2000 /usr/bin/python3 test/storm_test.py
+    STORM_DATAGRAMS=100000 STORM_RATE=1500 /usr/bin/python3 test/storm_test.py
 """
 
 import json

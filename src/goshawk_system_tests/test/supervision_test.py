@@ -184,13 +184,19 @@ class NotEssential(SupervisionCase):
                            f"'{GOSHAWK}' launch '{path}' --json --log-dir '{logs}' | head -1; "
                            "sleep 1000")
         log = logs / "supervisord.log"
-        runs = until(lambda: log.exists() and "entered RUNNING" in log.read_text(), 20.0)
+        runs = until(lambda: log.exists() and "spawned: 'tracker'" in log.read_text(), 20.0)
         self.assertTrue(runs)
         pid = int(re.findall(r"spawned: 'tracker' with pid (\d+)", log.read_text())[-1])
         os.kill(pid, signal.SIGKILL)  # there is something to tell
         again = until(lambda: log.read_text().count("spawned: 'tracker'") == 2, 20.0)
         self.assertTrue(again)
         self.assertNotIn("waiting for", log.read_text())
+        for pid in harness.processes_of(self.sandbox.token):
+            if "launch.py" in harness.command_of(pid):
+                os.kill(pid, signal.SIGINT)
+        gone = until(lambda: not any("tracker" in harness.command_of(p)
+                                     for p in harness.processes_of(self.sandbox.token)), 10.0)
+        self.assertTrue(gone)
 
 
 class OddNames(SupervisionCase):

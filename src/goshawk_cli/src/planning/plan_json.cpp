@@ -72,9 +72,9 @@ Json state_json(const FlatState& state) {
 }
 
 Json request_json(const Plan& plan) {
-  const Limits& l = plan.limits;
-  return {{"start", state_json(plan.start)},
-          {"goal", state_json(plan.goal)},
+  const Limits& l = plan.request.limits;
+  return {{"start", state_json(plan.request.start)},
+          {"goal", state_json(plan.request.goal)},
           {"limits",
            {{"v_max_m_s", l.v_max_m_s},
             {"a_max_m_s2", l.a_max_m_s2},

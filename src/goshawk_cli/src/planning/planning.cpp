@@ -85,37 +85,32 @@ void Planner::set_map(const LoadedMap& map) {
   search_.set_map(grid_);
 }
 
-Plan Planner::plan(const FlatState& start, const FlatState& goal, const Limits& limits,
-                   const std::vector<Vec3>& other_goals_map) {
+Plan Planner::plan(const PlanRequest& request) {
   Plan plan;
-  plan.start = start;
-  plan.goal = goal;
-  plan.limits = limits;
-  std::vector<Vec3> goals_map = {goal.position};
-  goals_map.insert(goals_map.end(), other_goals_map.begin(), other_goals_map.end());
-  plan.outcome = run(start, goals_map, limits, plan);
+  plan.request = request;
+  plan.outcome = run(plan);
   return plan;
 }
 
-Status Planner::run(const FlatState& start, const std::vector<Vec3>& goals_map,
-                    const Limits& limits, Plan& plan) {
-  if (auto status = limits.check(); !status) return status;
-  auto path = run_stage(plan, "path_search", std::string(search_.planner_name()), [&] {
-    return search_.plan({.start_map = start.position, .goals_map = goals_map});
-  });
+Status Planner::run(Plan& plan) {
+  PlanRequest& request = plan.request;
+  if (auto status = check(request); !status) return status;
+  auto path = run_stage(plan, "path_search", std::string(search_.planner_name()),
+                        [&] { return search_.plan(request); });
   if (!path) return path.error();
   plan.path = *std::move(path);
   // The search may have moved the ends, or chosen another goal.
-  plan.start.position = plan.path->waypoints_map.front();
-  plan.goal.position = plan.path->waypoints_map.back();
+  request.start.position = plan.path->waypoints_map.front();
+  request.goal.position = plan.path->waypoints_map.back();
   const auto raw = raw_->obstacles(grid_->inflation_m);
   auto corridor = run_stage(plan, "corridor_builder", std::string(builder_.implementation()),
                             [&] { return builder_.build(*grid_, plan.path->waypoints_map, &raw); });
   if (!corridor) return corridor.error();
   plan.corridor = *std::move(corridor);
-  auto solution =
-      run_stage(plan, "trajectory_optimizer", std::string(optimizer_.implementation()),
-                [&] { return optimizer_.optimise(*plan.corridor, plan.start, plan.goal, limits); });
+  auto solution = run_stage(
+      plan, "trajectory_optimizer", std::string(optimizer_.implementation()), [&] {
+        return optimizer_.optimise(*plan.corridor, request.start, request.goal, request.limits);
+      });
   if (!solution) return solution.error();
   plan.solution = *std::move(solution);
   return success();

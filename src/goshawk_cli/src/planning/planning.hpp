@@ -3,7 +3,7 @@
 #include <memory>
 #include <optional>
 
-#include "goshawk/core/certificate.hpp"
+#include "goshawk/core/plan_request.hpp"
 #include "goshawk/corridor_builder/raw_map.hpp"
 #include "goshawk/map_server/config.hpp"
 #include "goshawk/path_search/path_search.hpp"
@@ -45,8 +45,7 @@ Result<LoadedMap> load_map(const PlanningConfig& config,
 
 /// What came out of each stage, as far as it went.
 struct Plan {
-  FlatState start, goal;  // what the trajectory was asked to begin and end with
-  Limits limits;
+  PlanRequest request;  // start and goal as the search moved them
   std::vector<StageTime> stages;
   std::optional<path_search::PlannedPath> path;
   std::optional<Corridor> corridor;
@@ -59,9 +58,7 @@ class Planner {
  public:
   static Result<Planner> create(const PlanningConfig& config);
   void set_map(const LoadedMap& map);
-  /// @param other_goals_map [m] positions that will do as well as the goal's
-  Plan plan(const FlatState& start, const FlatState& goal, const Limits& limits,
-            const std::vector<Vec3>& other_goals_map = {});
+  Plan plan(const PlanRequest& request);
 
  private:
   Planner(path_search::PathSearch search, corridor_builder::CorridorBuilder builder,
@@ -69,8 +66,7 @@ class Planner {
       : search_(std::move(search)),
         builder_(std::move(builder)),
         optimizer_(std::move(optimizer)) {}
-  Status run(const FlatState& start, const std::vector<Vec3>& goals_map, const Limits& limits,
-             Plan& plan);
+  Status run(Plan& plan);
 
   path_search::PathSearch search_;
   corridor_builder::CorridorBuilder builder_;

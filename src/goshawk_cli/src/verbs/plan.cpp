@@ -13,10 +13,12 @@ namespace goshawk::cli {
 namespace {
 
 struct PlanOptions {
+  PlanOptions() {
+    request.start.position = Vec3(3.0, 0.0, 1.0);
+    request.goal.position = Vec3(3.0, 8.0, 2.0);
+  }
   MapOptions map;
-  Vec3 start_map = Vec3(3.0, 0.0, 1.0);
-  Vec3 goal_map = Vec3(3.0, 8.0, 2.0);
-  std::vector<Vec3> other_goals_map;
+  PlanRequest request;
   std::string save;
 };
 
@@ -46,8 +48,7 @@ void print(const Plan& plan) {
   }
 }
 
-Status save(const Plan& plan, const LoadedMap& map, const Limits& limits,
-            const std::string& folder) {
+Status save(const Plan& plan, const LoadedMap& map, const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   flight_report::Flight flight;
@@ -55,7 +56,7 @@ Status save(const Plan& plan, const LoadedMap& map, const Limits& limits,
   flight.title = "Goshawk plan";
   flight.obstacles = &raw;
   flight.grown = map.grown.get();
-  flight.limits = limits;
+  flight.limits = plan.request.limits;
   flight_report::Leg leg;
   leg.raw_path_map = plan.path->raw_map;
   leg.waypoints_map = plan.path->waypoints_map;
@@ -64,12 +65,6 @@ Status save(const Plan& plan, const LoadedMap& map, const Limits& limits,
   flight.legs.push_back(std::move(leg));
   if (auto drawn = flight_report::write_flight_folder(flight, folder); !drawn) return drawn;
   return flight_report::write_flight_page(flight, page_template(), folder + "/flight.html");
-}
-
-FlatState at_rest(const Vec3& position_map) {
-  FlatState state;
-  state.position = position_map;
-  return state;
 }
 
 int run_plan(const PlanOptions& o, const Console& console) {
@@ -81,12 +76,12 @@ int run_plan(const PlanOptions& o, const Console& console) {
   if (!map) return console.not_done(map.error());
 
   planner->set_map(*map);
-  const Limits limits = o.map.limits();
-  const Plan plan =
-      planner->plan(at_rest(o.start_map), at_rest(o.goal_map), limits, o.other_goals_map);
+  PlanRequest request = o.request;
+  request.limits = o.map.limits();
+  const Plan plan = planner->plan(request);
   // A plan that cannot be saved is a failure: it is told instead of the result.
   if (plan.outcome && !o.save.empty()) {
-    if (const auto saved = save(plan, *map, limits, o.save); !saved) {
+    if (const auto saved = save(plan, *map, o.save); !saved) {
       return console.not_done(saved.error());
     }
   }
@@ -102,9 +97,9 @@ void add_plan(Program& program) {
       "plan", "one plan in this process, no DDS: path, corridor, certified trajectory");
   auto o = std::make_shared<PlanOptions>();
   add_map_options(verb, o->map);
-  add_point(verb, "--start", o->start_map, "[m] frame map");
-  add_point(verb, "--goal", o->goal_map, "[m] frame map");
-  add_points(verb, "--other-goal", o->other_goals_map,
+  add_point(verb, "--start", o->request.start.position, "[m] frame map");
+  add_point(verb, "--goal", o->request.goal.position, "[m] frame map");
+  add_points(verb, "--other-goal", o->request.other_goals_map,
              "[m] another goal that will do as well; may repeat");
   verb->add_option("--save", o->save, "folder for pictures, tables and the corridor's mesh");
   verb->footer(

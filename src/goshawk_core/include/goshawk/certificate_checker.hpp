@@ -121,8 +121,8 @@ inline Verdict check(const std::vector<Piece>& pieces, const std::vector<Polytop
                      const Limits& limits, const State& start, const State& goal) {
   using namespace detail;
   Verdict v{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL, limits.j_max > 0.0 ? -HUGE_VAL : 0.0};
-  for (const Polytope& p : polytopes) {
-    if (!always(p)) v.validity = -HUGE_VAL;
+  for (const Piece& p : pieces) {
+    if (p.polytope < polytopes.size() && !always(polytopes[p.polytope])) v.validity = -HUGE_VAL;
   }
   if (pieces.empty() || !sound(limits)) v.position = v.velocity = v.acceleration = HUGE_VAL;
   // A start above a limit: how far above, and until when, the first pieces may be.

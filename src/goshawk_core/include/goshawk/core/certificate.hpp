@@ -15,11 +15,11 @@ namespace goshawk {
 /// that meets a NaN, an invalid polytope, an invalid limit or a duration that is not above zero is
 /// NaN, and then the certificate does not hold.
 struct Certificate {
-  double position_m = 0.0;             // control points outside their polytope, max of A c - b
-  double validity_s = 0.0;             // pieces outside their polytope's interval; 0: none has one
-  double velocity_m_s = 0.0;           // velocity control points above v_max
-  double acceleration_m_s2 = 0.0;      // acceleration control points above a_max
-  double jerk_m_s3 = 0.0;              // jerk control points above j_max; 0: there is no such limit
+  double position_m = 0.0;         // control points outside their polytope, max of A c - b
+  double validity_s = 0.0;         // pieces outside their polytope's interval; 0: no piece has one
+  double velocity_m_s = 0.0;       // velocity control points above v_max
+  double acceleration_m_s2 = 0.0;  // acceleration control points above a_max
+  double jerk_m_s3 = 0.0;          // jerk control points above j_max; 0: there is no such limit
   double continuity_position_m = 0.0;  // jumps between pieces
   double continuity_velocity_m_s = 0.0;
   double continuity_acceleration_m_s2 = 0.0;

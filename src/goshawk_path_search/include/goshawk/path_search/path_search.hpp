@@ -1,11 +1,13 @@
 #pragma once
 
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "goshawk/core/grid_geometry.hpp"
+#include "goshawk/core/plan_request.hpp"
 #include "goshawk/path_search/config.hpp"
 #include "goshawk/path_search/ends.hpp"
 #include "goshawk/path_search/planner.hpp"
@@ -14,11 +16,12 @@
 
 namespace goshawk::path_search {
 
-/// What a user asks for. Points in frame `map`.
+/// What a search needs of a request: a view. Points in frame `map`.
 struct PlanQuery {
   Vec3 start_map = Vec3::Zero();    // [m]
   std::span<const Vec3> goals_map;  // [m] any one of them will do
   StopSignal stop = {};             // beside Config::time_limit_s: whichever comes first
+  UnknownSpace unknown = UnknownSpace::as_configured;
 };
 
 /// The answer of the stage. Points in frame `map`.
@@ -60,6 +63,7 @@ class PathSearch {
   /// @return the errors of place_end(), make_search_map() and GridPlanner::search(). Of several
   /// goals those that are not free are left out; if none is left the error is the first one's
   Result<PlannedPath> plan(const PlanQuery& query);
+  Result<PlannedPath> plan(const PlanRequest& request, const StopSignal& stop = {});
   Result<PlannedPath> plan(const Vec3& start_map, const Vec3& goal_map);
 
   /// The same into memory that is reused: a repeated query allocates nothing (grid searches).
@@ -76,6 +80,7 @@ class PathSearch {
   Status search(const PlanQuery& query, PlannedPath& path);
   void fill(PlannedPath& path);
   void relax(std::vector<Vec3>& waypoints_map);
+  PathSearch* other_search(UnknownSpace unknown);
 
   Config config_;
   std::unique_ptr<GridPlanner> planner_;
@@ -84,6 +89,8 @@ class PathSearch {
   double planner_resolution_m_ = 0.0;
   std::shared_ptr<const VoxelGrid> given_map_;
   std::shared_ptr<const VoxelGrid> map_;  // as make_search_map() has it
+  // For requests that take unknown space in another way than the configuration; made when needed.
+  std::map<UnknownRule, std::unique_ptr<PathSearch>> others_;
   Error map_error_{ErrorCode::no_map, "no map yet: wait for one, or load one, before planning"};
 
   // Of the query at work.
