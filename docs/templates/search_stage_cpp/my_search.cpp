@@ -2,6 +2,7 @@
 #include <signal.h>
 
 #include <algorithm>
+#include <functional>
 
 #include "goshawk/stage/intake.hpp"
 #include "goshawk/stage/map_subscription.hpp"
@@ -52,24 +53,21 @@ class MySearch {
  public:
   explicit MySearch(Node& node)
       : node_(node),
-        reporter_(node, "my_search"),
+        reporter_(node, StageRole::path_search, "my_search"),
         publisher_(node.advertise<msg::Path>("path", Qos::reliable_last())),
-        map_(node, reporter_) {
-    node.subscribe<msg::PlanRequest>("plan_request", Qos::reliable_last(),
-                                     [this](const auto& m, const auto& info) { on(m, info); });
+        map_(node, reporter_),
+        requests_(node, reporter_, "plan_request", std::bind_front(&MySearch::on, this)) {
     reporter_.ready("searches breadth first");
   }
 
  private:
-  void on(const msg::PlanRequest& m, const MessageInfo& info) {
-    Timing timing{.wire_ns = wire_time_ns(m.header(), info)};
-    const auto request = open_request(m, node_.now_ns(), reporter_, timing);  // checks all of it
-    if (!request) return;
+  // A request that is valid, in time and not superseded.
+  void on(const msg::PlanRequest& m, const PlanRequest& request, Timing timing) {
     if (map_.grid() == nullptr) {
       return reporter_.failed(m.id(), fail(ErrorCode::no_map, "no map has come yet"), timing);
     }
     const auto [path, compute_ns] = timed(
-        [&] { return search(*map_.grid(), request->start.position, request->goal.position); });
+        [&] { return search(*map_.grid(), request.start.position, request.goal.position); });
     timing.compute_ns = compute_ns;
     if (!path) return reporter_.failed(m.id(), path.error(), timing);
     msg::Path answer;
@@ -80,7 +78,7 @@ class MySearch {
     answer.raw(conversions::to_points(*path));
     answer.waypoints(conversions::to_points(*path));
     answer.compute_ns(compute_ns);
-    (void)publisher_.publish(answer);
+    reporter_.send(publisher_, answer, m.id());
     reporter_.answered(m.id(), timing);
   }
 
@@ -88,6 +86,7 @@ class MySearch {
   StageReporter reporter_;
   Publisher<msg::Path> publisher_;
   MapSubscription map_;
+  Intake<msg::PlanRequest> requests_;
 };
 
 int main(int argc, char** argv) {

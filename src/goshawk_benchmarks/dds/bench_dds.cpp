@@ -179,7 +179,7 @@ int run_echo(const LinkOptions& options) {
 }
 
 int run(Report& report, const std::string& part) {
-  const int domain = goshawk::runtime::hold_private_domain();
+  const int domain = goshawk::runtime::hold_private_domain().value();
   if (part == "all" || part == "ways") measure_ways(report, domain);
   if (part == "all" || part == "hand_over") measure_hand_over(report, domain);
   if (part == "all" || part == "maps") measure_disturbance(report, domain);

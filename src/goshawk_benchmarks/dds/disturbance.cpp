@@ -56,7 +56,7 @@ class SetpointWriter : public Running {
  public:
   explicit SetpointWriter(Context& context)
       : Running(context, "setpoint_writer"),
-        publisher_(node().advertise<msg::ThrustAttitude>("command", Qos::best_effort())) {
+        publisher_(node().advertise<msg::AttitudeSetpoint>("command", Qos::best_effort())) {
     node().every(kSetpointPeriod_s, [this] {
       message_.thrust(++number_);
       message_.header(conversions::make_header(node().now_ns()));
@@ -65,8 +65,8 @@ class SetpointWriter : public Running {
   }
 
  private:
-  Publisher<msg::ThrustAttitude> publisher_;
-  msg::ThrustAttitude message_;
+  Publisher<msg::AttitudeSetpoint> publisher_;
+  msg::AttitudeSetpoint message_;
   double number_ = 0.0;
 };
 
@@ -99,8 +99,9 @@ class SetpointReader : public Running {
  public:
   explicit SetpointReader(Context& context) : Running(context, "setpoint_reader") {
     us.reserve(1 << 16);
-    node().subscribe<msg::ThrustAttitude>(
-        "command", Qos::best_effort(), [this](const msg::ThrustAttitude& m, const MessageInfo& i) {
+    node().subscribe<msg::AttitudeSetpoint>(
+        "command", Qos::best_effort(),
+        [this](const msg::AttitudeSetpoint& m, const MessageInfo& i) {
           if (us.empty()) first_ = m.thrust();
           last_ = m.thrust();
           us.push_back(double(i.received_ns - conversions::to_ns(m.header().stamp())) * 1e-3);

@@ -7,6 +7,7 @@
 
 #include "common/child.hpp"
 #include "goshawk/conversions/plan.hpp"
+#include "goshawk/conversions/status.hpp"
 #include "goshawk/conversions/vehicle.hpp"
 #include "goshawk/recording_tools/messages.hpp"
 #include "goshawk/runtime/component.hpp"
@@ -136,7 +137,8 @@ class Feeder {
         [this](const Output& m, const MessageInfo& info) { on_answer(m, info.received_ns); });
     node_.subscribe<msg::StageReport>("stage_report", Qos::latched(100),
                                       [this](const msg::StageReport& m, const auto&) {
-                                        if (m.code() == "ok" || m.stage() != options_.stage) return;
+                                        const auto role = conversions::stage_role_of(m.stage());
+                                        if (m.code() == "ok" || role != role_) return;
                                         const auto asked = find(m.request_id());
                                         if (asked == open_.end()) return;
                                         open_.erase(asked);
@@ -225,6 +227,7 @@ class Feeder {
   }
 
   const FeedOptions& options_;
+  const std::optional<StageRole> role_ = stage_role_of(options_.stage);
   Node node_;
   Publisher<msg::VoxelGrid> maps_;
   Publisher<Input> inputs_;

@@ -107,7 +107,7 @@ int main(int argc, char** argv) {
     feed_options.count = call.at("count");
     feed_options.rate_hz = call.at("rate_hz");
     if (options.quick) feed_options.count = std::min(feed_options.count, 50);
-    feed_options.domain = goshawk::runtime::hold_private_domain();
+    feed_options.domain = goshawk::runtime::hold_private_domain().value();
     return run(feed_options, call.at("against"), options);
   });
 }

@@ -19,7 +19,7 @@ namespace cli_test {
 using Steady = std::chrono::steady_clock;
 
 inline int domain() {
-  static const int held = goshawk::runtime::hold_private_domain();
+  static const int held = goshawk::runtime::hold_private_domain().value();
   return held;
 }
 

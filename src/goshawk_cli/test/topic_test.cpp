@@ -29,7 +29,8 @@ using cli_test::run;
 using cli_test::seconds_since;
 using cli_test::Steady;
 
-/// A domain in which a planner publishes a path every 20 ms, a map is latched, and a goal is read.
+/// A domain in which a planner publishes a path every 20 ms, latches a map and a state, and reads a
+/// goal.
 class Verbs : public testing::Test {
  protected:
   void SetUp() override {
@@ -53,6 +54,10 @@ class Verbs : public testing::Test {
     map.header().frame_id("map");
     map.occupied().assign(100, 7);
     ASSERT_TRUE(map_.publish(map));
+    state_ = node_->advertise<goshawk_msgs::msg::NavigatorState>("state", Qos::latched());
+    goshawk_msgs::msg::NavigatorState state;
+    state.state(goshawk_msgs::msg::NavigatorState_Constants::STATE_ARRIVED);
+    ASSERT_TRUE(state_.publish(state));
     node_->every(0.02, [this] {
       goshawk_msgs::msg::Path path;
       const auto now_ns = node_->now_ns();
@@ -79,19 +84,20 @@ class Verbs : public testing::Test {
   std::unique_ptr<Node> node_;
   goshawk::runtime::Publisher<goshawk_msgs::msg::Path> path_;
   goshawk::runtime::Publisher<goshawk_msgs::msg::VoxelGrid> map_;
+  goshawk::runtime::Publisher<goshawk_msgs::msg::NavigatorState> state_;
   std::thread thread_;
   std::mutex mutex_;
   std::vector<std::string> goals_;
 };
 
 TEST_F(Verbs, ListsTopicsWithTypes) {
-  EXPECT_EQ(find({"topic", "list"}).out, "/uav1/goal\n/uav1/map/voxels\n/uav1/path\n");
+  EXPECT_EQ(find({"topic", "list"}).out, "/uav1/goal\n/uav1/map/voxels\n/uav1/path\n/uav1/state\n");
   const auto typed = find({"topic", "list", "-t"});
   EXPECT_EQ(typed.status, 0) << typed.err;
   EXPECT_THAT(typed.out, HasSubstr("/uav1/path [goshawk_msgs/msg/Path]\n"));
   const Json json = Json::parse(find({"topic", "list", "--json"}).out);
   EXPECT_EQ(json["domain"], domain());
-  ASSERT_EQ(json["topics"].size(), 3u);
+  ASSERT_EQ(json["topics"].size(), 4u);
   EXPECT_EQ(json["topics"][2], Json::parse(R"({"name": "/uav1/path", "publishers": 1,
       "subscribers": 0, "types": ["goshawk_msgs/msg/Path"]})"));
 }
@@ -104,6 +110,13 @@ TEST_F(Verbs, TellsWhoWritesATopic) {
   EXPECT_EQ(json["publishers"][0]["reliability"], "reliable");
   EXPECT_THAT(find({"topic", "info", "/uav1/path"}).out,
               HasSubstr("Publishers: 1\n  /uav1/planner  (reliable, volatile)"));
+}
+
+TEST_F(Verbs, EchoesTheNamesOfConstantsAsComments) {
+  const auto yaml = find({"topic", "echo", "/uav1/state", "--once"});
+  EXPECT_THAT(yaml.out, HasSubstr("\nstate: 3  # STATE_ARRIVED\n")) << yaml.err;
+  const auto line = find({"topic", "echo", "/uav1/state", "--once", "--json"});
+  EXPECT_EQ(Json::parse(line.out)["state"], 3);
 }
 
 TEST_F(Verbs, EchoesMessages) {
@@ -235,7 +248,7 @@ TEST_F(Verbs, SayWhenNoMessageComes) {
 
 // Nobody is in this domain.
 int empty_domain() {
-  static const int held = goshawk::runtime::hold_private_domain();
+  static const int held = goshawk::runtime::hold_private_domain().value();
   return held;
 }
 
@@ -264,7 +277,7 @@ TEST(VerbsAlone, NameWhatIsWrongInACall) {
   expect({"topic", "ecko", "/a"}, "did you mean echo?");
   expect({"topic"}, "a verb is missing: goshawk topic list | info | echo");
   expect({"topic", "echo"}, "topic is required");
-  expect({"topic", "echo", "/a b"}, "is not a name");
+  expect({"topic", "echo", "/a b"}, "is not a valid name");
   expect({"topic", "echo", "/a", "-n", "0"}, "-n");
   expect({"topic", "list", "--timeout", "-1"}, "--timeout");
   expect({"topic", "pub", "/a", "std_msgs/msg/Strin", "{}"}, "did you mean std_msgs/msg/String?");

@@ -22,7 +22,7 @@ msg::PlanRequest request_between(const Vec3& start, const Vec3& goal) {
   return conversions::to_msg(request);
 }
 
-/// What is wrong with a request is wrong for every stage that gets it.
+/// Faults of a request, the same for every stage that gets it.
 template <typename Input>
 void add_bad_requests(Cases<Input>& cases, const Input& good) {
   const auto add = [&](const char* name, std::set<std::string> codes, auto&& change) {
@@ -55,7 +55,7 @@ path_search::PathSearch make_search(const World& world) {
   return *std::move(search);
 }
 
-/// Good paths, as any search stage might send them.
+/// Good paths, as any search stage might send.
 std::vector<msg::Path> make_paths(const World& world, Random& random, int count) {
   auto search = make_search(world);
   std::vector<msg::Path> paths;
@@ -91,8 +91,8 @@ Cases<msg::PlanRequest> search_cases(const World& world, Random& random, int cou
   const Vec3 free = free_point(world, random);
   add("a start in an obstacle", "start_occupied", world.in_obstacle_map, free);
   add("a goal in an obstacle", "goal_occupied", free, world.in_obstacle_map);
-  add("a start outside of the map", "start_outside", world.outside_map, free);
-  add("a goal outside of the map", "goal_outside", free, world.outside_map);
+  add("a start outside the map", "start_outside", world.outside_map, free);
+  add("a goal outside the map", "goal_outside", free, world.outside_map);
   add("a goal that is cut off", "no_path", free, world.in_room_map);
   return cases;
 }
@@ -150,7 +150,7 @@ Cases<msg::Corridor> trajectory_cases(const World& world, Random& random, int co
       [](auto& c) { c.polytopes().front().offsets().front() = kNan; });
   add("a start faster than the limits", {"start_infeasible", "trajectory_infeasible"},
       [](auto& c) { c.request().start().velocity().x(50.0); });
-  add("a start outside of the corridor", {"start_infeasible", "invalid_input"},
+  add("a start outside the corridor", {"start_infeasible", "invalid_input"},
       [](auto& c) { c.request().start().position().x(500.0); });
   return cases;
 }

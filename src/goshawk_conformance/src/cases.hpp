@@ -9,7 +9,7 @@
 
 namespace goshawk::conformance {
 
-/// A request, and what must come back.
+/// A request and its expected answer.
 template <typename Input>
 struct Case {
   std::string name;  // "start in an obstacle"; empty for a good one
@@ -24,7 +24,7 @@ struct Cases {
   std::string no_map;  // code of a request that comes before any map; empty: it needs none
 };
 
-/// Every request has an id of its own above first_id, and no deadline unless it is about that.
+/// Each request has its own id above first_id, and a deadline only if the case is about deadlines.
 Cases<msg::PlanRequest> search_cases(const World& world, Random& random, int count);
 Cases<msg::Path> corridor_cases(const World& world, Random& random, int count);
 Cases<msg::Corridor> trajectory_cases(const World& world, Random& random, int count);

@@ -1,5 +1,7 @@
 #include "checks.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -18,12 +20,10 @@ Vec3 vec(const geometry_msgs::msg::Vector3& v) {
 }
 
 std::string at(const char* what, std::size_t k, const char* fault, double by) {
-  char text[160];
-  std::snprintf(text, sizeof text, "%s %zu %s (%.3g)", what, k, fault, by);
-  return text;
+  return fmt::format("{} {} {} ({:.3g})", what, k, fault, by);
 }
 
-/// The point is in the open inside of an occupied voxel, or outside of the map.
+/// The point is in the interior of an occupied voxel, or outside the map.
 bool is_blocked(const VoxelGrid& grid, const Vec3& p) {
   const Vec3 g = grid.geometry.to_grid(p);
   const double slack = kTolerance / grid.geometry.resolution_m;
@@ -50,15 +50,14 @@ template <typename Message>
 std::string fault_of_head(const Message& m, const VoxelGrid& grid) {
   if (m.header().frame_id() != "map") return "its frame is '" + m.header().frame_id() + "'";
   if (m.header().stamp().sec() == 0) return "it has no stamp";
-  if (m.implementation().empty()) return "it does not say who made it";
+  if (m.implementation().empty()) return "its implementation is empty";
   if (m.map_version() != grid.version) {
-    return "it names map version " + std::to_string(m.map_version()) + ", which is " +
-           std::to_string(grid.version);
+    return fmt::format("it names map version {} instead of {}", m.map_version(), grid.version);
   }
   return "";
 }
 
-/// @return [m] how far outside; negative inside; infinity where it is no polytope
+/// @return [m] how far outside; negative inside; infinity if it is not a polytope
 double outside(const msg::Polytope& polytope, const Vec3& p) {
   const auto& n = polytope.normals();
   const auto& b = polytope.offsets();
@@ -122,7 +121,7 @@ std::string fault_of_piece(const msg::BezierPiece& piece, std::size_t k, double 
                            const std::vector<msg::Polytope>& polytopes, const msg::Limits& limits) {
   if (!(piece.duration() > 0.0)) return at("piece", k, "lasts [s]", piece.duration());
   if (piece.polytope() >= polytopes.size()) {
-    return at("piece", k, "names a polytope that is not there", double(piece.polytope()));
+    return at("piece", k, "names a polytope that does not exist", double(piece.polytope()));
   }
   const msg::Polytope& home = polytopes[piece.polytope()];
   double position = -1.0, velocity = 0.0, acceleration = 0.0, jerk = 0.0;
@@ -164,7 +163,7 @@ double state_error(const msg::FlatState& state, const msg::BezierPiece& piece, b
 std::string fault_of(const msg::Path& path, const msg::PlanRequest& sent, const VoxelGrid& grid) {
   if (auto fault = fault_of_head(path, grid); !fault.empty()) return fault;
   const auto& w = path.waypoints();
-  if (w.size() < 2) return "it has " + std::to_string(w.size()) + " waypoints";
+  if (w.size() < 2) return fmt::format("it has {} waypoints", w.size());
   if ((vec(w.front()) - vec(sent.start().position())).norm() > kTolerance) {
     return "it does not begin at the start";
   }
@@ -187,12 +186,12 @@ std::string fault_of(const msg::Corridor& corridor, const msg::Path& sent, const
   const auto& w = corridor.waypoints();
   const auto& polytopes = corridor.polytopes();
   if (polytopes.empty() || w.size() != polytopes.size() + 1) {
-    return std::to_string(polytopes.size()) + " polytopes need one waypoint more, but there are " +
-           std::to_string(w.size());
+    return fmt::format("{} polytopes need one waypoint more, but there are {}", polytopes.size(),
+                       w.size());
   }
   if ((vec(w.front()) - vec(sent.waypoints().front())).norm() > kTolerance ||
       (vec(w.back()) - vec(sent.waypoints().back())).norm() > kTolerance) {
-    return "it does not join the ends of the path";
+    return "its ends are not those of the path";
   }
   for (std::size_t k = 0; k < polytopes.size(); ++k) {
     const double out =
@@ -201,7 +200,7 @@ std::string fault_of(const msg::Corridor& corridor, const msg::Path& sent, const
     if (auto fault = fault_of_space(polytopes[k], k, grid); !fault.empty()) return fault;
   }
   if (polytopes.size() > 1 && !(corridor.min_overlap_radius() > 0.0)) {
-    return "neighbours share no ball, by its own figure";
+    return "its own min_overlap_radius is not above zero";
   }
   return "";
 }
@@ -224,7 +223,8 @@ std::string fault_of(const msg::BezierTrajectory& t, const msg::Corridor& sent,
       const double jump = (derivative(t.pieces()[k - 1], order, std::size_t(5 - order)) -
                            derivative(piece, order, 0))
                               .norm();
-      if (!(jump <= kTolerance)) return at("piece", k, "jumps from the one before", jump);
+      if (!(jump <= kTolerance))
+        return at("piece", k, "is not continuous with the previous piece", jump);
     }
   }
   const double start = state_error(sent.request().start(), t.pieces().front(), false);

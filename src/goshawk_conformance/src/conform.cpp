@@ -34,7 +34,7 @@ Result<Report> examine(runtime::Context& context, const Options& o, const char* 
   return examiner.examine(make_cases(world, random, o.requests), recorded);
 }
 
-/// @return of a recording's topic, or invalid_input where it has none
+/// @return the messages of a recording's topic; invalid_input if it has none
 template <typename Message>
 Result<std::vector<Message>> load(const Options& o, const std::string& topic) {
   if (o.input.empty()) return std::vector<Message>{};
@@ -46,7 +46,7 @@ Result<std::vector<Message>> load(const Options& o, const std::string& topic) {
 Result<Report> examine_tracker(runtime::Context& context, const Options& o) {
   auto flights = load<msg::CommittedTrajectory>(o, "committed_trajectory");
   if (!flights) return flights.error();
-  // One that begins in motion cannot be joined from rest.
+  // Trajectories that begin in motion cannot be flown from rest.
   std::erase_if(*flights, [](const msg::CommittedTrajectory& m) {
     const auto& v = m.nominal().request().start().velocity();
     return m.nominal().pieces().empty() || std::hypot(v.x(), v.y(), v.z()) > 1e-3;

@@ -8,6 +8,7 @@
 #include "goshawk/conformance/conform.hpp"
 #include "goshawk/conversions/grid.hpp"
 #include "goshawk/conversions/plan.hpp"
+#include "goshawk/conversions/status.hpp"
 #include "goshawk/runtime/node.hpp"
 #include "recorded.hpp"
 #include "tally.hpp"
@@ -39,7 +40,7 @@ class Examiner {
                          const std::optional<Recorded<Input>>& recorded) {
     if (auto there = wait_for_stage(); !there) return there.error();
     report_.stage = options_.stage;
-    report_.items.push_back({"says that it is ready", ready_,
+    report_.items.push_back({"reports that it is ready", ready_,
                              ready_ ? "" : "no stage_report of request 0 with code ok came"});
     if (!cases.no_map.empty() && options_.fresh) examine_no_map(cases);
     send_map(*world_.grid);
@@ -59,7 +60,7 @@ class Examiner {
   };
 
   void take(const msg::StageReport& m) {
-    if (m.stage() != options_.stage) return;
+    if (conversions::stage_role_of(m.stage()) != stage_role_of(options_.stage)) return;
     implementation_ = m.implementation();
     if (m.request_id() == 0 && m.code() == "ok") ready_ = true;
     if (m.request_id() == id_) answer_.reports.push_back(m);
@@ -75,12 +76,12 @@ class Examiner {
   Status wait_for_stage() {
     const bool there = spin_until(options_.ready_timeout_s, [&] { return inputs_.matched() > 0; });
     if (!there) {
-      return fail(ErrorCode::stage_silent, "nobody reads " + std::string(input_topic_) + ": is " +
+      return fail(ErrorCode::stage_silent, "no node reads " + std::string(input_topic_) + ": is " +
                                                options_.stage +
                                                " running, in this domain and namespace?");
     }
     spin_until(2.0, [&] { return ready_; });
-    spin_until(0.5, [] { return false; });  // its answers' writers are found as well
+    spin_until(0.5, [] { return false; });  // the writers of its answers are found as well
     return success();
   }
 
@@ -105,7 +106,7 @@ class Examiner {
     return input;
   }
 
-  /// The answer: a result with its report, or a report of failure; whatever came until timeout.
+  /// The answer: a result with its report, or a report of failure; or whatever came until timeout.
   Answer ask(const Input& input, Input& sent) {
     ++id_;
     answer_ = {};
@@ -116,7 +117,7 @@ class Examiner {
       const bool failed = !answer_.reports.empty() && answer_.reports.back().code() != "ok";
       return failed || (!answer_.reports.empty() && !answer_.outputs.empty());
     });
-    node_.spin_some(0.002);  // one answer too many would come right behind
+    node_.spin_some(0.002);  // an extra answer would follow at once
     return answer_;
   }
 
@@ -129,12 +130,12 @@ class Examiner {
   void examine_good(const Cases<Input>& cases) {
     Tally answered("answers every request"), reported("reports every result"),
         echoed("echoes the request whole"), valid("results are valid"),
-        again("answers the same twice");
+        again("gives the same answer twice");
     std::vector<double> latencies_s;
     for (std::size_t k = 0; k < cases.good.size(); ++k) {
       Input sent;
       const Answer answer = ask(cases.good[k].input, sent);
-      const std::string name = "request " + std::to_string(id_);
+      const std::string name = fmt::format("request {}", id_);
       answered.check(answer.outputs.size() == 1, name + what_came(answer));
       if (answer.outputs.size() != 1) continue;
       const Output& output = answer.outputs.front();
@@ -158,19 +159,19 @@ class Examiner {
     const Answer answer = ask(input, sent);
     if (answer.outputs.size() != 1)
       return again.check(false, "the second time" + what_came(answer));
-    const auto bare = [](Output m) {  // without what may differ
+    const auto bare = [](Output m) {  // without fields that may differ
       m.header({});
       m.request({});
       m.compute_ns(0);
       return runtime::encode(m);
     };
     again.check(bare(answer.outputs.front()) == bare(first),
-                "request " + std::to_string(id_) + " had another answer before");
+                fmt::format("request {}", id_) + " had another answer before");
   }
 
   std::string what_came(const Answer& answer) const {
-    std::string text = " had " + std::to_string(answer.outputs.size()) + " results and " +
-                       std::to_string(answer.reports.size()) + " reports";
+    std::string text =
+        fmt::format(" had {} results and {} reports", answer.outputs.size(), answer.reports.size());
     if (!answer.reports.empty()) {
       text += " (" + answer.reports.back().code() + ": " + answer.reports.back().message() + ")";
     }
@@ -198,17 +199,17 @@ class Examiner {
     report_.items.push_back(code_item(bad.name, answer, bad.codes));
   }
 
-  // What others asked once, in their map: a code is an answer as well, where there was none before.
+  // Recorded requests in their recorded map. A failure is an answer too, if there was no result.
   void examine_recorded(const Recorded<Input>& recorded) {
     send_map(*recorded.grid);
-    Tally answered("answers every recorded request"), solved("solves what was solved"),
+    Tally answered("answers every recorded request"), solved("solves what was solved before"),
         echoed("echoes recorded requests whole"), valid("results of recorded requests are valid");
     for (Input input : recorded.inputs) {
       const std::uint64_t recorded_id = request_of(input).id();
-      request_of(input).header().stamp({});  // stamped anew, so that deadlines hold
+      request_of(input).header().stamp({});  // stamped anew, so that deadlines have not passed
       Input sent;
       const Answer answer = ask(input, sent);
-      const std::string name = "recorded request " + std::to_string(recorded_id);
+      const std::string name = fmt::format("recorded request {}", recorded_id);
       const bool refused = answer.outputs.empty() && answer.reports.size() == 1 &&
                            answer.reports.front().code() != "ok" &&
                            !answer.reports.front().message().empty();
@@ -227,7 +228,7 @@ class Examiner {
     }
   }
 
-  // Bytes that are no message, from a second writer, then a good request.
+  // Bytes that are not a message, from a second writer; then a good request.
   void examine_garbage(const Input& good) {
     const auto raw = node_.advertise_raw(
         input_topic_, runtime::raw_message_type(runtime::message_type<Input>().name()),
@@ -244,7 +245,7 @@ class Examiner {
     Input sent;
     const Answer answer = ask(good, sent);
     report_.items.push_back(
-        {"lives on after garbage", answer.outputs.size() == 1,
+        {"survives garbage", answer.outputs.size() == 1,
          answer.outputs.size() == 1 ? "" : "a good request" + what_came(answer)});
   }
 

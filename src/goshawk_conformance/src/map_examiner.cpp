@@ -1,5 +1,7 @@
 #include "map_examiner.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -71,13 +73,13 @@ MapExaminer::MapExaminer(runtime::Context& context, const Options& options)
 
 Result<Report> MapExaminer::examine(const std::vector<Cloud>& recorded) {
   if (!spin_until(options_.ready_timeout_s, [&] { return clouds_.matched() > 0; })) {
-    return fail(ErrorCode::stage_silent, "nobody reads cloud_in: is " + options_.stage +
+    return fail(ErrorCode::stage_silent, "no node reads cloud_in: is " + options_.stage +
                                              " running, in this domain and namespace?");
   }
   report_.stage = options_.stage;
   spin_until(options_.timeout_s, [&] { return listener_.ready(); });
   report_.items.push_back(
-      {"says that it is ready", listener_.ready(),
+      {"reports that it is ready", listener_.ready(),
        listener_.ready() ? "" : "no stage_report of request 0 with code ok came"});
   examine_first_map();
   if (grid_) {
@@ -113,7 +115,7 @@ void MapExaminer::take_whole(const msg::VoxelGrid& m) {
   if (grid_ && grid_->version > grid->version) return;  // an older one, late
   if (grid_ && grid_->version == grid->version) {
     chain_.check(same_bits(*grid_, *grid),
-                 "version " + std::to_string(grid->version) + " differs from its updates");
+                 fmt::format("version {} differs from its updates", grid->version));
   }
   grid_ = *std::move(grid);
   changed_ns_ = node_.now_ns();
@@ -122,10 +124,10 @@ void MapExaminer::take_whole(const msg::VoxelGrid& m) {
 void MapExaminer::take_update(const msg::VoxelGridUpdate& m) {
   if (!grid_ || grid_->version >= m.to_version()) return;
   const auto update = conversions::from_msg(m);
-  chain_.check(update && m.from_version() == grid_->version,
-               update ? "it follows on version " + std::to_string(m.from_version()) + ", not on " +
-                            std::to_string(grid_->version)
-                      : update.error().message);
+  chain_.check(
+      update && m.from_version() == grid_->version,
+      update ? fmt::format("it applies to version {}, not to {}", m.from_version(), grid_->version)
+             : update.error().message);
   if (!update || m.from_version() != grid_->version) return;
   const Status applied = apply(*grid_, *update);
   chain_.check(bool(applied), applied ? "" : applied.error().message);
@@ -134,10 +136,10 @@ void MapExaminer::take_update(const msg::VoxelGridUpdate& m) {
 
 void MapExaminer::examine_first_map() {
   const bool came = spin_until(10.0 * options_.timeout_s, [&] { return grid_.has_value(); });
-  report_.items.push_back({"has a map for who comes", came,
+  report_.items.push_back({"publishes a map", came,
                            came          ? to_text(grid_->geometry.size) + " voxels"
                            : wholes_ > 0 ? "none was valid"
-                                         : "none came on map/voxels"});
+                                         : "no message came on map/voxels"});
 }
 
 void MapExaminer::examine_late_joiner() {
@@ -150,22 +152,22 @@ void MapExaminer::examine_late_joiner() {
   spin_until(0.1, [] { return false; });
   const bool same = version != 0 && version >= grid_->version;
   report_.items.push_back(
-      {"has the newest map for who comes late", same, "version " + std::to_string(version)});
+      {"gives late joiners the newest map", same, fmt::format("version {}", version)});
 }
 
 void MapExaminer::examine_octomap() {
   spin_until(options_.timeout_s, [&] { return octomap_.has_value(); });
   std::string fault;
   if (!octomap_) {
-    fault = "none came on octomap_binary";
+    fault = "no message came on octomap_binary";
   } else if (octomap_->header().frame_id() != "map") {
     fault = "its frame is '" + octomap_->header().frame_id() + "'";
   } else if (!octomap_->binary() || octomap_->id() != "OcTree") {
-    fault = "it is no binary OcTree";
+    fault = "it is not a binary OcTree";
   } else if (std::abs(octomap_->resolution() - grid_->geometry.resolution_m) > 1e-9) {
     fault = "its resolution is not the grid's";
   }
-  report_.items.push_back({"serves an OctoMap as well", fault.empty(), fault});
+  report_.items.push_back({"publishes an OctoMap", fault.empty(), fault});
 }
 
 void MapExaminer::send_vehicle() {
@@ -173,7 +175,7 @@ void MapExaminer::send_vehicle() {
   RigidBodyState state;
   state.position_map = vehicle_map_;
   conversions::fill_msg(state, m);
-  // Best effort: some of them come.
+  // Best effort: only some of them arrive.
   for (int k = 0; k < 10; ++k) {
     m.header(conversions::make_header(node_.now_ns()));
     (void)odometry_.publish(m);
@@ -210,9 +212,10 @@ void MapExaminer::examine_scan() {
   const double half_m = 0.5 * geometry.resolution_m * geometry.size.x;
   const double ahead_m = std::min(1.5, 0.6 * half_m);
   const auto points = wall(ahead_m);
-  Tally taken("changes the map by what is seen"), seen("what is seen is an obstacle"),
-      grown("obstacles are grown by what the map says"), cleared("space on the way is measured");
-  // Twice, so that no doubt is left where hits are counted.
+  Tally taken("changes the map after a scan"), seen("measured points become obstacles"),
+      grown("obstacles are grown by the map's inflation"),
+      cleared("space along the rays becomes known");
+  // Twice, for maps that count hits.
   for (int k = 0; k < 2; ++k) {
     taken.check(see(cloud_of(points, node_.now_ns())), listener_.failed()
                                                            ? listener_.reports().back().message()
@@ -227,7 +230,7 @@ void MapExaminer::examine_scan() {
         const Index3 near{i.x + (axis == 0 ? d : 0), i.y + (axis == 1 ? d : 0),
                           i.z + (axis == 2 ? d : 0)};
         grown.check(grid_->occupied.test(near),
-                    "a voxel " + std::to_string(std::abs(d)) + " from an obstacle is free");
+                    fmt::format("a voxel {} from an obstacle is free", std::abs(d)));
       }
     }
     const Index3 half_way = *geometry.index_of(vehicle_map_ + 0.5 * (p - vehicle_map_));
@@ -250,16 +253,16 @@ void MapExaminer::examine_bad() {
     c.width(c.width() * 1000);
     c.row_step(c.row_step() * 1000);
   });
-  refuse("a field outside of its point", {"invalid_input"},
+  refuse("a field outside its point", {"invalid_input"},
          [](Cloud& c) { c.fields()[2].offset(4'000'000'000U); });
   refuse("a big-endian cloud", {"invalid_input"}, [](Cloud& c) { c.is_bigendian(true); });
   refuse("a cloud in another frame", {"wrong_frame"},
          [](Cloud& c) { c.header().frame_id("nowhere"); });
   spin_until(0.3, [] { return false; });
-  report_.items.push_back({"keeps its map meanwhile", same_bits(before, *grid_), ""});
+  report_.items.push_back({"keeps its map after bad clouds", same_bits(before, *grid_), ""});
   see(cloud_of(std::vector<Vec3>(20, Vec3(kNan, kNan, kNan)), node_.now_ns()));
   report_.items.push_back(
-      {"takes missing returns for no obstacle", before.occupied == grid_->occupied, ""});
+      {"does not take missing returns for obstacles", before.occupied == grid_->occupied, ""});
 }
 
 void MapExaminer::examine_recorded(const std::vector<Cloud>& recorded) {
@@ -268,7 +271,7 @@ void MapExaminer::examine_recorded(const std::vector<Cloud>& recorded) {
   for (std::size_t k = 0; k < recorded.size(); ++k) {
     const bool changed = see(recorded[k]);
     answered.check(changed || listener_.failed(),
-                   "cloud " + std::to_string(k) + " had neither a newer map nor a report");
+                   fmt::format("cloud {} had neither a newer map nor a report", k));
   }
   report_.items.push_back(answered.item());
 }
@@ -287,8 +290,7 @@ void MapExaminer::examine_garbage() {
   spin_until(0.3, [] { return false; });
   send_vehicle();
   const bool lives = see(cloud_of(wall(0.9), node_.now_ns()));
-  report_.items.push_back(
-      {"lives on after garbage", lives, lives ? "" : "a good cloud changed nothing"});
+  report_.items.push_back({"survives garbage", lives, lives ? "" : "a good cloud changed nothing"});
   // Its updates are compared with the next whole map.
   spin_until(5.0 * options_.timeout_s, [&] { return whole_version_ >= grid_->version; });
 }

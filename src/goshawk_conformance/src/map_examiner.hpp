@@ -11,8 +11,8 @@
 
 namespace goshawk::conformance {
 
-/// Stands in for the sensor and for those who read the map: looks at walls that it makes up in
-/// front of a vehicle in the middle of the map, and judges what becomes of the map.
+/// Stands in for the sensor and for readers of the map: sends scans of invented walls in front of a
+/// vehicle in the middle of the map, and judges how the map changes.
 class MapExaminer {
  public:
   MapExaminer(runtime::Context& context, const Options& options);
@@ -49,12 +49,12 @@ class MapExaminer {
 
   std::optional<VoxelGrid> grid_;  // the newest, updates applied
   int wholes_ = 0;
-  std::uint64_t whole_version_ = 0;  // of the newest whole map that came
+  std::uint64_t whole_version_ = 0;  // of the newest whole map
   std::int64_t changed_ns_ = 0;
   std::optional<octomap_msgs::msg::Octomap> octomap_;
   Vec3 vehicle_map_ = Vec3::Zero();
   Tally wholes_valid_{"whole maps are valid"};
-  Tally chain_{"updates follow on one another, and lead to the next whole map"};
+  Tally chain_{"updates are consecutive and lead to the next whole map"};
   std::vector<double> latencies_s_;
 };
 

@@ -9,7 +9,7 @@
 
 namespace goshawk::conformance {
 
-/// What a planning stage got and made of it, when it was recorded.
+/// Recorded inputs of a planning stage, and which of them it solved.
 template <typename Input>
 struct Recorded {
   std::vector<Input> inputs;
@@ -17,7 +17,7 @@ struct Recorded {
   std::shared_ptr<const VoxelGrid> grid;  // the newest whole map
 };
 
-/// @return invalid_input where the recording lacks the stage's inputs or a map
+/// @return invalid_input if the recording lacks the stage's inputs or a map
 template <typename Input, typename Output>
 Result<Recorded<Input>> load_recorded(const std::string& file, const char* input_topic,
                                       const char* output_topic) {
@@ -34,7 +34,7 @@ Result<Recorded<Input>> load_recorded(const std::string& file, const char* input
   const auto outputs = recording::messages_of<Output>(*reader, output_topic);
   if (outputs) {
     for (const auto& output : *outputs) recorded.solved.insert(output.request().id());
-  } else if (outputs.code() != ErrorCode::invalid_input) {  // which says that nothing was solved
+  } else if (outputs.code() != ErrorCode::invalid_input) {  // that means that nothing was solved
     return outputs.error();
   }
   recorded.grid = std::make_shared<VoxelGrid>(*std::move(grid));

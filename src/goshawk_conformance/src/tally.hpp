@@ -1,16 +1,19 @@
 #pragma once
 
+#include <fmt/format.h>
+
 #include <set>
 #include <string>
 #include <vector>
 
 #include "goshawk/conformance/conform.hpp"
+#include "goshawk/conversions/status.hpp"
 #include "goshawk/runtime/node.hpp"
 #include "goshawk_msgs.h"
 
 namespace goshawk::conformance {
 
-/// Collects what went wrong under a name; the item has passed where nothing did.
+/// Collects faults under a name; the item has passed if there are none.
 class Tally {
  public:
   explicit Tally(std::string name) : name_(std::move(name)) {}
@@ -21,9 +24,8 @@ class Tally {
   int checked() const { return checked_; }
   Item item() const {
     if (checked_ == 0) return {name_, false, "there was nothing to examine"};
-    if (faults_ == 0) return {name_, true, std::to_string(checked_) + " of them"};
-    return {name_, false,
-            std::to_string(faults_) + " of " + std::to_string(checked_) + ": " + first_};
+    if (faults_ == 0) return {name_, true, fmt::format("{} of them", checked_)};
+    return {name_, false, fmt::format("{} of {}: {}", faults_, checked_, first_)};
   }
 
  private:
@@ -38,10 +40,11 @@ inline runtime::RosArgs in_namespace(const std::string& node_namespace) {
   return args;
 }
 
-/// What a stage says of itself and of requests.
+/// What a stage reports about itself and about requests.
 class ReportListener {
  public:
-  ReportListener(runtime::Node& node, std::string stage) : stage_(std::move(stage)) {
+  ReportListener(runtime::Node& node, std::string_view stage)
+      : role_(stage_role_of(stage).value()) {
     node.subscribe<goshawk_msgs::msg::StageReport>(
         "stage_report", runtime::Qos::latched(1000),
         [this](const goshawk_msgs::msg::StageReport& m, const auto&) { take(m); });
@@ -49,7 +52,7 @@ class ReportListener {
 
   bool ready() const { return ready_; }
   const std::string& implementation() const { return implementation_; }
-  /// From here on of this request only (0: of the stage itself).
+  /// From here on keeps the reports of this request only (0: of the stage itself).
   void listen(std::uint64_t request_id) {
     id_ = request_id;
     reports_.clear();
@@ -62,13 +65,14 @@ class ReportListener {
 
  private:
   void take(const goshawk_msgs::msg::StageReport& m) {
-    if (m.stage() != stage_) return;
+    if (conversions::stage_role_of(m.stage()) != role_) return;
     implementation_ = m.implementation();
     if (m.request_id() == 0 && m.code() == "ok") ready_ = true;
     if (m.request_id() == id_) reports_.push_back(m);
   }
 
-  std::string stage_, implementation_;
+  StageRole role_;
+  std::string implementation_;
   bool ready_ = false;
   std::uint64_t id_ = 0;
   std::vector<goshawk_msgs::msg::StageReport> reports_;

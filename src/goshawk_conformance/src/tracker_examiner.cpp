@@ -1,9 +1,12 @@
 #include "tracker_examiner.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "goshawk/conversions/plan.hpp"
+#include "goshawk/conversions/status.hpp"
 #include "goshawk/conversions/vehicle.hpp"
 #include "world.hpp"
 
@@ -11,17 +14,18 @@ namespace goshawk::conformance {
 namespace {
 
 namespace msg = goshawk_msgs::msg;
+namespace mode = goshawk_msgs::msg::TrackingState_Constants;
 using runtime::MessageInfo;
 using runtime::Qos;
 
 constexpr std::int64_t kPeriod_ns = 10'000'000;  // of odometry
-constexpr double kMostError_m = 0.25;  // a tracker of whatever kind, in calm air, at 1 m/s
+constexpr double kMostError_m = 0.25;            // for any tracker, in calm air, at 1 m/s
 constexpr double kBegins_in_s = 0.3;
-constexpr double kStall_s = 0.08;  // without odometry or commands: the machine's fault
+constexpr double kStall_s = 0.08;  // without odometry or commands: the machine stalled
 constexpr int kAttempts = 10;
 const auto kNever = [] { return false; };
 
-// Where a committed trajectory wants the vehicle, by de Casteljau.
+// Position of a committed trajectory, by de Casteljau.
 Vec3 wanted(const msg::CommittedTrajectory& m, double time_s) {
   const auto& pieces = m.nominal().pieces();
   std::size_t k = 0;
@@ -67,9 +71,9 @@ TrackerExaminer::TrackerExaminer(runtime::Context& context, const Options& optio
       odometry_(node_.advertise<nav_msgs::msg::Odometry>("odom", Qos::best_effort())),
       commits_(node_.advertise<Committed>("committed_trajectory", Qos::latched())) {
   vehicle_.position_map = Vec3(1.0, 2.0, 1.5);
-  node_.subscribe<msg::ThrustAttitude>(
+  node_.subscribe<msg::AttitudeSetpoint>(
       "command", Qos::best_effort(10),
-      [this](const msg::ThrustAttitude& m, const MessageInfo& i) { take(m, i.received_ns); });
+      [this](const msg::AttitudeSetpoint& m, const MessageInfo& i) { take(m, i.received_ns); });
   node_.subscribe<msg::TrackingState>("tracking_state", Qos::best_effort(),
                                       [this](const auto& m, const auto&) { state_ = m; });
 }
@@ -78,28 +82,27 @@ Result<Report> TrackerExaminer::examine(const std::vector<Committed>& recorded) 
   const std::int64_t end_ns = node_.now_ns() + std::int64_t(options_.ready_timeout_s * 1e9);
   while (odometry_.matched() == 0 && node_.now_ns() < end_ns) node_.spin_some(0.02);
   if (odometry_.matched() == 0) {
-    return fail(ErrorCode::stage_silent, "nobody reads odom: is " + options_.stage +
+    return fail(ErrorCode::stage_silent, "no node reads odom: is " + options_.stage +
                                              " running, in this domain and namespace?");
   }
   report_.stage = options_.stage;
   live(2.0, [&] { return listener_.ready(); });
   report_.items.push_back(
-      {"says that it is ready", listener_.ready(),
+      {"reports that it is ready", listener_.ready(),
        listener_.ready() ? "" : "no stage_report of request 0 with code ok came"});
   live(10.0 * options_.timeout_s, [&] { return commands_ >= 20; });
   report_.items.push_back(
-      {"answers odometry with commands", commands_ >= 20, std::to_string(commands_) + " commands"});
+      {"answers odometry with commands", commands_ >= 20, fmt::format("{} commands", commands_)});
   if (commands_ >= 20) {
     weigh();
     examine_flight("flies a trajectory", [&] { return straight(Vec3(0.6, 0.3, 0.2), 3.5); });
     examine_bad();
     for (const auto& m : recorded) {
       const auto& p = m.nominal().pieces().front().control_points()[0];
-      examine_flight("flies recorded trajectory " + std::to_string(m.nominal().request().id()),
-                     [&] {
-                       fly_to(Vec3(p.x(), p.y(), p.z()));
-                       return m;
-                     });
+      examine_flight(fmt::format("flies recorded trajectory {}", m.nominal().request().id()), [&] {
+        fly_to(Vec3(p.x(), p.y(), p.z()));
+        return m;
+      });
     }
     examine_bad_odometry();
     examine_garbage();
@@ -124,7 +127,7 @@ bool TrackerExaminer::live(double timeout_s, const std::function<bool()>& done) 
   return done();
 }
 
-// Whatever time has passed since: a stall of the machine is flown through with the last command.
+// Advances to the present: during a stall of the machine the last command holds.
 void TrackerExaminer::move() {
   const std::int64_t now_ns = node_.now_ns();
   const double dt_s = moved_ns_ == 0 ? 0.0 : double(now_ns - moved_ns_) * 1e-9;
@@ -145,7 +148,7 @@ void TrackerExaminer::send_odometry() {
   (void)odometry_.publish(m);
 }
 
-void TrackerExaminer::take(const msg::ThrustAttitude& m, std::int64_t received_ns) {
+void TrackerExaminer::take(const msg::AttitudeSetpoint& m, std::int64_t received_ns) {
   ++commands_;
   if (commanded_ns_ > 0) {
     longest_gap_s_ = std::max(longest_gap_s_, double(received_ns - commanded_ns_) * 1e-9);
@@ -155,13 +158,13 @@ void TrackerExaminer::take(const msg::ThrustAttitude& m, std::int64_t received_n
   const bool stamped = conversions::to_ns(m.header().stamp()) > 0;
   valid_.check(command && stamped && command->thrust_n >= 0.0,
                !command ? command.error().message
-                        : "it has no stamp, or a thrust of " + std::to_string(m.thrust()) + " N");
+                        : fmt::format("it has no stamp, or a thrust of {:.3g} N", m.thrust()));
   if (!command) return;
   if (moved_ns_ > 0) latencies_s_.push_back(double(received_ns - moved_ns_) * 1e-9);
   command_ = *command;
 }
 
-// It hovers in its place: what it asks for now is its weight.
+// It hovers: its thrust is the weight.
 void TrackerExaminer::weigh() {
   double sum_n = 0.0;
   int count = 0;
@@ -175,7 +178,7 @@ void TrackerExaminer::weigh() {
   });
   weight_n_ = count > 0 ? sum_n / count : 0.0;
   report_.items.push_back(
-      {"hovers with a thrust above zero", weight_n_ > 0.0, std::to_string(weight_n_) + " N"});
+      {"hovers with a thrust above zero", weight_n_ > 0.0, fmt::format("{:.2f} N", weight_n_)});
 }
 
 TrackerExaminer::Committed TrackerExaminer::straight(const Vec3& by, double duration_s) {
@@ -231,20 +234,20 @@ TrackerExaminer::Flight TrackerExaminer::fly(const Committed& committed) {
     const double time_s = double(moved_ns_ - begin_ns) * 1e-9;
     flight.worst_m =
         std::max(flight.worst_m, (wanted(committed, time_s) - vehicle_.position_map).norm());
-    flight.followed |= state_.mode() == "follow" && state_.request_id() == id_;
+    flight.followed |= state_.mode() == mode::MODE_FOLLOW && state_.request_id() == id_;
     return time_s > lasts_s + 0.5;
   });
   flight.left_m = (wanted(committed, lasts_s) - vehicle_.position_map).norm();
   flight.accepted = !listener_.reports().empty() && listener_.reports().front().code() == "ok";
   flight.said =
       listener_.reports().empty() ? "no report came" : listener_.reports().back().message();
-  flight.holds = state_.mode() == "hold";
+  flight.holds = state_.mode() == mode::MODE_HOLD;
   flight.gap_s = longest_gap_s_;
   return flight;
 }
 
-// A machine that stalls takes odometry or commands away for so long that every tracker must give
-// up: that flight tells nothing, and is flown again.
+// If the machine stalls, odometry or commands are missing for so long that every tracker must give
+// up: such a flight is flown again.
 TrackerExaminer::Flight TrackerExaminer::fly_undisturbed(const std::function<Committed()>& make) {
   Flight flight;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
@@ -260,16 +263,14 @@ void TrackerExaminer::examine_flight(const std::string& name,
   const auto add = [&](const char* what, bool passed, const std::string& detail) {
     report_.items.push_back({name + ": " + what, passed, detail});
   };
-  char text[120];
   add("accepts it", f.accepted, f.accepted ? "" : f.said);
-  std::snprintf(text, sizeof text, "largest error %.3f m; longest silence %.3f s", f.worst_m,
-                f.gap_s);
-  add("stays on it", f.worst_m <= kMostError_m, text);
-  std::snprintf(text, sizeof text, "%.3f m from its end, in mode %s", f.left_m,
-                state_.mode().c_str());
-  add("arrives and holds", f.arrived(), text);
-  add("says that it follows", f.followed,
-      f.followed ? "" : "tracking_state never named it in mode follow");
+  add("stays on it", f.worst_m <= kMostError_m,
+      fmt::format("largest error {:.3f} m; longest silence {:.3f} s", f.worst_m, f.gap_s));
+  add("arrives and holds", f.arrived(),
+      fmt::format("{:.3f} m from its end, in mode {}", f.left_m,
+                  conversions::tracking_mode_word(state_.mode())));
+  add("reports that it follows", f.followed,
+      f.followed ? "" : "tracking_state never named it in MODE_FOLLOW");
 }
 
 void TrackerExaminer::examine_bad() {
@@ -289,7 +290,7 @@ void TrackerExaminer::examine_bad() {
   refuse("one without pieces", {"invalid_input"}, [](Committed& m) { m.nominal().pieces({}); });
   refuse("a control point that is not a number", {"invalid_input"},
          [](Committed& m) { m.nominal().pieces()[0].control_points()[3].y(kNan); });
-  refuse("a piece of no time", {"invalid_input"},
+  refuse("a piece of zero duration", {"invalid_input"},
          [](Committed& m) { m.nominal().pieces()[0].duration(0.0); });
   refuse("a piece without its polytope", {"invalid_input"},
          [](Committed& m) { m.nominal().pieces()[0].polytope(7); });
@@ -318,8 +319,8 @@ void TrackerExaminer::examine_bad() {
   });
   live(0.5, kNever);
   const double moved_m = (vehicle_.position_map - before).norm();
-  report_.items.push_back(
-      {"stays where it is meanwhile", moved_m < 0.1, std::to_string(moved_m) + " m away"});
+  report_.items.push_back({"stays in place after bad trajectories", moved_m < 0.1,
+                           fmt::format("{:.3f} m away", moved_m)});
 }
 
 void TrackerExaminer::examine_bad_odometry() {
@@ -333,11 +334,11 @@ void TrackerExaminer::examine_bad_odometry() {
   }
   const int before = commands_;
   const bool lives = live(10.0 * options_.timeout_s, [&] { return commands_ >= before + 20; });
-  report_.items.push_back({"lives on after odometry that is not a number", lives,
-                           lives ? "" : "no more commands came"});
+  report_.items.push_back(
+      {"survives odometry that is not finite", lives, lives ? "" : "no more commands came"});
 }
 
-// Bytes that are no message, on both inputs, then all as before.
+// Bytes that are not a message, on both inputs; then everything must work as before.
 void TrackerExaminer::examine_garbage() {
   const auto odometry = node_.advertise_raw(
       "odom", runtime::raw_message_type(runtime::message_type<nav_msgs::msg::Odometry>().name()),
@@ -356,10 +357,10 @@ void TrackerExaminer::examine_garbage() {
   live(0.3, kNever);
   const int before = commands_;
   const bool lives = live(10.0 * options_.timeout_s, [&] { return commands_ >= before + 20; });
-  report_.items.push_back({"lives on after garbage", lives, lives ? "" : "no more commands came"});
+  report_.items.push_back({"survives garbage", lives, lives ? "" : "no more commands came"});
 }
 
-// Without odometry a tracker is blind: it must not go on commanding.
+// A tracker without odometry must stop commanding.
 void TrackerExaminer::examine_silence() {
   const auto wait = [&](double seconds) {
     const std::int64_t end_ns = node_.now_ns() + std::int64_t(seconds * 1e9);
@@ -368,8 +369,8 @@ void TrackerExaminer::examine_silence() {
   wait(1.0);
   const int before = commands_;
   wait(0.5);
-  report_.items.push_back({"commands nothing without odometry", commands_ == before,
-                           std::to_string(commands_ - before) + " commands"});
+  report_.items.push_back({"stops commanding without odometry", commands_ == before,
+                           fmt::format("{} commands", commands_ - before)});
 }
 
 }  // namespace goshawk::conformance

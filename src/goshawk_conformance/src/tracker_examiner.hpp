@@ -9,9 +9,9 @@
 
 namespace goshawk::conformance {
 
-/// Stands in for the vehicle and the navigator: flies what the tracker commands (a point mass that
-/// takes thrust and attitude at once, in real time), commits trajectories good and bad, and judges
-/// the commands by where they lead.
+/// Stands in for the vehicle and the navigator: flies the tracker's commands (with a point mass
+/// that follows thrust and attitude at once, in real time), commits good and bad trajectories, and
+/// judges the commands by the flight.
 class TrackerExaminer {
  public:
   TrackerExaminer(runtime::Context& context, const Options& options);
@@ -25,9 +25,9 @@ class TrackerExaminer {
   struct Flight {
     bool accepted = false, followed = false, holds = false;
     std::string said;      // in the last report
-    double worst_m = 0.0;  // farthest from where it should be
-    double left_m = 0.0;   // from the end, when it is over
-    double gap_s = 0.0;    // longest without odometry or commands
+    double worst_m = 0.0;  // largest distance from the reference
+    double left_m = 0.0;   // distance from the end when it is over
+    double gap_s = 0.0;    // longest time without odometry or commands
     bool arrived() const { return holds && left_m <= 0.1; }
     bool good() const { return accepted && followed && arrived(); }
   };
@@ -36,11 +36,11 @@ class TrackerExaminer {
   bool live(double timeout_s, const std::function<bool()>& done);
   void move();
   void send_odometry();
-  void take(const goshawk_msgs::msg::ThrustAttitude& m, std::int64_t received_ns);
+  void take(const goshawk_msgs::msg::AttitudeSetpoint& m, std::int64_t received_ns);
   void weigh();
   /// @return [ns] when it begins
   std::int64_t commit(Committed committed, double begins_in_s);
-  /// To where the next flight begins. @return whether it is there
+  /// Flies to the start of the next flight. @return whether it arrived
   bool fly_to(const Vec3& position);
   Flight fly(const Committed& committed);
   Flight fly_undisturbed(const std::function<Committed()>& make);
@@ -61,12 +61,12 @@ class TrackerExaminer {
   Report report_;
 
   RigidBodyState vehicle_;
-  double weight_n_ = 0.0;      // what it hovers with; 0: not weighed yet, it is held
+  double weight_n_ = 0.0;      // thrust in hover; 0: not measured yet
   std::int64_t moved_ns_ = 0;  // when the vehicle's state was true
   std::int64_t next_ns_ = 0;   // of the next odometry
-  std::optional<ThrustAttitude> command_;
+  std::optional<AttitudeSetpoint> command_;
   int commands_ = 0;
-  std::int64_t commanded_ns_ = 0;  // when the newest came
+  std::int64_t commanded_ns_ = 0;  // when the newest command came
   double longest_gap_s_ = 0.0;     // of odometry or commands, since a flight began
   std::uint64_t id_ = 1000;
   goshawk_msgs::msg::TrackingState state_;

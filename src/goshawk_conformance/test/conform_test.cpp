@@ -29,7 +29,7 @@ class ForeignSearch {
       : node_(node),
         fault_(fault),
         search_(*path_search::PathSearch::create({})),
-        reporter_(node, "foreign"),
+        reporter_(node, StageRole::path_search, "foreign"),
         publisher_(node.advertise<msg::Path>("path", Qos::reliable_last())),
         map_(node, reporter_, [this](const auto& grid) { search_.set_map(grid); }) {
     node.subscribe<msg::PlanRequest>("plan_request", Qos::reliable_last(),
@@ -142,11 +142,11 @@ TEST(Conform, ResultsWithoutReportsAreNamed) {
 }
 
 TEST(Conform, StageThatAnswersOtherwiseTheSecondTimeIsNamed) {
-  EXPECT_THAT(failed(examine(Fault::moody)), ElementsAre("answers the same twice"));
+  EXPECT_THAT(failed(examine(Fault::moody)), ElementsAre("gives the same answer twice"));
 }
 
 TEST(Conform, NobodyThereIsAnError) {
-  const auto ours = join(runtime::hold_private_domain());
+  const auto ours = join(runtime::hold_private_domain().value());
   const auto report = conform(*ours, {.stage = "path_search", .ready_timeout_s = 0.3});
   ASSERT_FALSE(report.ok());
   EXPECT_EQ(report.code(), ErrorCode::stage_silent);

@@ -38,7 +38,7 @@ class ForeignMap {
       : node_(node),
         fault_(fault),
         map_(empty_map()),
-        reporter_(node, "foreign"),
+        reporter_(node, StageRole::map_server, "foreign"),
         wholes_(node.advertise<msg::VoxelGrid>(
             "map/voxels", fault == MapFault::only_once ? Qos::reliable_last() : Qos::latched())),
         updates_(
@@ -132,15 +132,15 @@ TEST(ConformMapServer, ForeignOnesPassOrFailAtTheRightItems) {
       EXPECT_FALSE(item.passed) << item.name;
     }
   }
-  EXPECT_THAT(failed(reports[1]), Contains("keeps its map meanwhile"));
-  EXPECT_THAT(failed(reports[2]), Contains("obstacles are grown by what the map says"));
-  EXPECT_THAT(failed(reports[2]), testing::Not(Contains("what is seen is an obstacle")));
+  EXPECT_THAT(failed(reports[1]), Contains("keeps its map after bad clouds"));
+  EXPECT_THAT(failed(reports[2]), Contains("obstacles are grown by the map's inflation"));
+  EXPECT_THAT(failed(reports[2]), testing::Not(Contains("measured points become obstacles")));
   EXPECT_THAT(failed(reports[3]),
-              ElementsAre("updates follow on one another, and lead to the next whole map"));
+              ElementsAre("updates are consecutive and lead to the next whole map"));
   // Nothing comes however long it is waited for.
   const auto report =
       examine<ForeignMap>({.stage = "map_server", .timeout_s = 0.05}, MapFault::only_once);
-  EXPECT_THAT(failed(report), Contains("has a map for who comes"));
+  EXPECT_THAT(failed(report), Contains("publishes a map"));
 }
 
 PointCloud2 cloud(const Vec3& at, const std::string& first_field) {
@@ -195,7 +195,7 @@ TEST(ConformMapServer, RecordedCloudsMustChangeTheMapOrBeRefused) {
 }
 
 TEST(ConformMapServer, ARecordingWithoutCloudsIsASentence) {
-  const auto context = join(runtime::hold_private_domain());
+  const auto context = join(runtime::hold_private_domain().value());
   const std::string file = testing::TempDir() + "conform_nothing.mcap";
   EXPECT_TRUE(recording::Writer::create(*recording::create_file(file, true))->close());
   for (const std::string stage : {"map_server", "tracker", "path_search"}) {

@@ -27,8 +27,8 @@ class ForeignTracker {
       : node_(node),
         fault_(fault),
         tracker_(*tracker::Tracker::create({})),
-        reporter_(node, "foreign"),
-        commands_(node.advertise<msg::ThrustAttitude>("command", Qos::best_effort())),
+        reporter_(node, StageRole::tracker, "foreign"),
+        commands_(node.advertise<msg::AttitudeSetpoint>("command", Qos::best_effort())),
         states_(node.advertise<msg::TrackingState>("tracking_state", Qos::best_effort())) {
     node.subscribe<msg::CommittedTrajectory>(
         "committed_trajectory", Qos::latched(),
@@ -80,7 +80,7 @@ class ForeignTracker {
     (void)commands_.publish(command_);
     const auto status = tracker_.status();
     msg::TrackingState s;
-    s.mode(std::string(tracker::to_string(status.mode)));
+    s.mode(std::uint8_t(status.mode));  // in the same order, as the component asserts
     s.request_id(status.trajectory_id);
     (void)states_.publish(s);
   }
@@ -90,9 +90,9 @@ class ForeignTracker {
   int steps_ = 0;
   tracker::Tracker tracker_;
   stage::StageReporter reporter_;
-  runtime::Publisher<msg::ThrustAttitude> commands_;
+  runtime::Publisher<msg::AttitudeSetpoint> commands_;
   runtime::Publisher<msg::TrackingState> states_;
-  msg::ThrustAttitude command_;
+  msg::AttitudeSetpoint command_;
 };
 
 TEST(ConformTracker, ForeignOnesPassOrFailAtTheRightItems) {
@@ -117,7 +117,7 @@ TEST(ConformTracker, ForeignOnesPassOrFailAtTheRightItems) {
   EXPECT_THAT(failed(reports[2]), Contains("flies a trajectory: arrives and holds"));
   EXPECT_THAT(failed(reports[2]), testing::Not(Contains(StartsWith("commands"))));
   EXPECT_THAT(failed(reports[3]), Contains(StartsWith("commands are finite")));
-  EXPECT_THAT(failed(reports[4]), Contains("commands nothing without odometry"));
+  EXPECT_THAT(failed(reports[4]), Contains("stops commanding without odometry"));
 }
 
 }  // namespace

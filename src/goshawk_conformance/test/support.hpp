@@ -32,7 +32,7 @@ inline std::vector<std::string> failed(const conformance::Report& report) {
 /// Examines Stage(node, fault), which runs in a thread and a domain of its own.
 template <typename Stage, typename Fault>
 conformance::Report examine(const conformance::Options& options, Fault fault) {
-  const int domain = runtime::hold_private_domain();
+  const int domain = runtime::hold_private_domain().value();
   const auto theirs = join(domain);
   runtime::Node node(*theirs, options.stage);
   const Stage stage(node, fault);

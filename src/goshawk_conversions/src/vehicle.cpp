@@ -56,13 +56,13 @@ void fill_msg(const RigidBodyState& state, nav_msgs::msg::Odometry& m) {
   m.twist().twist().angular(to_vector(state.angular_velocity_base));
 }
 
-Result<ThrustAttitude> from_msg(const goshawk_msgs::msg::ThrustAttitude& m) {
+Result<AttitudeSetpoint> from_msg(const goshawk_msgs::msg::AttitudeSetpoint& m) {
   if (auto s = check_frame(m.header(), kMapFrame, "a thrust and attitude command"); !s) {
     return s.error();
   }
   auto q = from_msg(m.orientation());
   if (!q) return q.error();
-  const ThrustAttitude command{m.thrust(), *q, from_msg(m.body_rate())};
+  const AttitudeSetpoint command{m.thrust(), *q, from_msg(m.body_rate())};
   if (!(std::isfinite(m.thrust()) && m.thrust() >= 0.0 &&
         command.angular_velocity_base.allFinite())) {
     return fail(ErrorCode::invalid_input,
@@ -73,7 +73,7 @@ Result<ThrustAttitude> from_msg(const goshawk_msgs::msg::ThrustAttitude& m) {
   return command;
 }
 
-void fill_msg(const ThrustAttitude& command, goshawk_msgs::msg::ThrustAttitude& m) {
+void fill_msg(const AttitudeSetpoint& command, goshawk_msgs::msg::AttitudeSetpoint& m) {
   m.thrust(command.thrust_n);
   m.orientation(to_msg(command.q_map_base));
   m.body_rate(to_vector(command.angular_velocity_base));

@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "goshawk/conversions/grid.hpp"
 #include "goshawk/conversions/vehicle.hpp"
@@ -9,7 +8,6 @@
 namespace goshawk::conversions {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 TEST(Stamp, SurvivesTheRoundTripAlsoBeforeTheEpoch) {
   for (const std::int64_t t : {0LL, 1LL, 999'999'999LL, 1'000'000'000LL, -1LL, -1'500'000'000LL}) {
@@ -122,18 +120,18 @@ TEST(OdometryMessage, WithAWrongFrameOrQuaternionIsRefused) {
   m.pose().pose().orientation().w(0.0);
   EXPECT_EQ(from_msg(m).code(), ErrorCode::invalid_input);
   fill_msg(RigidBodyState{}, m);
-  m.twist().twist().linear().x(kNaN);
+  m.twist().twist().linear().x(std::nan(""));
   EXPECT_EQ(from_msg(m).code(), ErrorCode::invalid_input);
 }
 
 TEST(CommandMessage, WithNegativeOrMissingThrustIsRefused) {
-  goshawk_msgs::msg::ThrustAttitude m;
+  goshawk_msgs::msg::AttitudeSetpoint m;
   m.header(make_header(0));
-  fill_msg(ThrustAttitude{9.81, Quaternion::Identity(), Vec3::Zero()}, m);
+  fill_msg(AttitudeSetpoint{9.81, Quaternion::Identity(), Vec3::Zero()}, m);
   ASSERT_TRUE(from_msg(m).ok());
   m.thrust(-1.0);
   EXPECT_EQ(from_msg(m).code(), ErrorCode::invalid_input);
-  m.thrust(kNaN);
+  m.thrust(std::nan(""));
   EXPECT_EQ(from_msg(m).code(), ErrorCode::invalid_input);
 }
 

@@ -1,3 +1,5 @@
+#include <functional>
+
 #include "goshawk/conversions/grid.hpp"
 #include "goshawk/corridor_builder/config.hpp"
 #include "goshawk/corridor_builder/corridor_builder.hpp"
@@ -33,12 +35,10 @@ class CorridorBuilderComponent : public Component {
         config_(node.parameters<Config>([this](const Config& c) { return reconfigure(c); })),
         builder_(make_builder(config_)),
         fallback_(make_builder(on_grown_grid(config_))),
-        reporter_(node, std::string(builder_.implementation())),
+        reporter_(node, StageRole::corridor_builder, std::string(builder_.implementation())),
         publisher_(node.advertise<msg::Corridor>("corridor", Qos::reliable_last())),
-        map_(node, reporter_) {
-    node.subscribe<msg::Path>(
-        "path", Qos::reliable_last(),
-        [this](const msg::Path& m, const MessageInfo& info) { on_path(m, info); });
+        map_(node, reporter_),
+        paths_(node, reporter_, "path", std::bind_front(&CorridorBuilderComponent::on_path, this)) {
     if (config_.margin == Margin::sphere) subscribe_raw();
     reporter_.ready("builds corridors with " + std::string(builder_.implementation()));
   }
@@ -68,20 +68,17 @@ class CorridorBuilderComponent : public Component {
     return builder_.build(grid, waypoints, &raw);
   }
 
-  void on_path(const msg::Path& m, const MessageInfo& info) {
-    Timing timing{.wire_ns = wire_time_ns(m.header(), info)};
-    const auto request = open_request(m.request(), node_.now_ns(), reporter_, timing);
-    if (!request) return;
+  void on_path(const msg::Path& m, const PlanRequest& request, Timing timing) {
     if (auto status = check_map(m); !status) {
-      return reporter_.failed(request->id, status.error(), timing);
+      return reporter_.failed(request.id, status.error(), timing);
     }
     const auto waypoints = conversions::waypoints_of(m);
-    if (!waypoints) return reporter_.failed(request->id, waypoints.error(), timing);
+    if (!waypoints) return reporter_.failed(request.id, waypoints.error(), timing);
     auto [corridor, compute_ns] = timed([&] { return build(*waypoints); });
     timing.compute_ns = compute_ns;
-    if (!corridor) return reporter_.failed(request->id, corridor.error(), timing);
+    if (!corridor) return reporter_.failed(request.id, corridor.error(), timing);
     publish(m.request(), *corridor, compute_ns);
-    report(request->id, *corridor, timing);
+    report(request.id, *corridor, timing);
   }
 
   Status check_map(const msg::Path& m) const {
@@ -126,6 +123,7 @@ class CorridorBuilderComponent : public Component {
   StageReporter reporter_;
   Publisher<msg::Corridor> publisher_;
   MapSubscription map_;
+  Intake<msg::Path> paths_;
 };
 
 }  // namespace

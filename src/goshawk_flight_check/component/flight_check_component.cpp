@@ -28,7 +28,9 @@ double seconds(std::int64_t ns) {
 class FlightCheckComponent : public Component {
  public:
   explicit FlightCheckComponent(Node& node)
-      : node_(node), config_(node.parameters<Config>()), reporter_(node, "fcl") {
+      : node_(node),
+        config_(node.parameters<Config>()),
+        reporter_(node, StageRole::flight_check, "fcl") {
     if (auto status = config_.body.check(); !status) throw StartupFault(status.error());
     node.subscribe<octomap_msgs::msg::Octomap>(
         "octomap_binary", Qos::latched(),

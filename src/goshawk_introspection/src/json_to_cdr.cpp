@@ -84,6 +84,9 @@ class Encoder {
       case Kind::int8:
         return write_integer<std::int8_t>(json);
       case Kind::uint8:
+        if (json != nullptr && json->is_string() && !field.constants.empty()) {
+          return write_constant(field, *json);
+        }
         return write_integer<std::uint8_t>(json);
       case Kind::int16:
         return write_integer<std::int16_t>(json);
@@ -137,6 +140,20 @@ class Encoder {
     }
     put(value);
     return true;
+  }
+
+  // The name of a constant instead of its value.
+  bool write_constant(const Field& field, const Json& json) {
+    const auto& name = json.get_ref<const std::string&>();
+    std::string all;
+    for (const auto& constant : field.constants) {
+      if (constant.name == name) {
+        put(std::uint8_t(constant.value));
+        return true;
+      }
+      all += (all.empty() ? "" : ", ") + std::string(constant.name);
+    }
+    return wrong(json, "a number or one of " + all);
   }
 
   template <typename T>

@@ -14,6 +14,7 @@ namespace {
 using goshawk_msgs::msg::Parameter;
 using goshawk_msgs::msg::ParameterAnswer;
 using goshawk_msgs::msg::ParameterRequest;
+namespace verb = goshawk_msgs::msg::ParameterRequest_Constants;
 
 constexpr double kSurely_s = 3.0;     // six announcements of whoever is there
 constexpr double kAskAgain_s = 0.25;  // discovery is not done at one moment for both ways
@@ -25,7 +26,7 @@ ParameterRequest to_msg(const ParameterQuestion& question, std::int64_t now_ns) 
   request.id(std::uint64_t(now_ns));
   request.client("goshawk_param_" + std::to_string(getpid()));
   request.node(question.node);
-  request.verb(question.verb);
+  request.verb(question.verb == ParameterVerb::get ? verb::VERB_GET : verb::VERB_SET);
   for (const auto& [name, value] : question.parameters) {
     Parameter p;
     p.name(name);

@@ -1,5 +1,7 @@
 #include "goshawk/introspection/schema.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <vector>
@@ -22,13 +24,17 @@ std::string short_name(std::string_view name) {
 
 void add_fields(const Type& type, std::string& text, std::vector<int>& inner) {
   for (const auto& field : type.fields) {
+    // Right before their field: viewers then show the name beside the number.
+    for (const auto& constant : field.constants) {
+      text += fmt::format("{} {}={}\n", ros_name(field.kind), constant.name, constant.value);
+    }
     if (field.kind == Kind::structure) {
       text += short_name(all_types()[std::size_t(field.type)].name);
       if (std::ranges::find(inner, field.type) == inner.end()) inner.push_back(field.type);
     } else {
       text += ros_name(field.kind);
     }
-    if (field.arity == Arity::array) text += "[" + std::to_string(field.size) + "]";
+    if (field.arity == Arity::array) text += fmt::format("[{}]", field.size);
     if (field.arity == Arity::sequence) text += "[]";
     text += " " + std::string(field.name);
     if (!field.comment.empty()) text += "  # " + std::string(field.comment);
@@ -50,9 +56,9 @@ Result<const Type*> find_type(std::string_view name) {
   }
   const std::string near = runtime::nearest_name(name, names);
   return fail(ErrorCode::invalid_input,
-              "'" + std::string(name) + "' is no message type that Goshawk knows" +
-                  (near.empty() ? "; they are named like goshawk_msgs/msg/Path"
-                                : "; did you mean " + near + "?"));
+              fmt::format("'{}' is not a message type that Goshawk knows; {}", name,
+                          near.empty() ? "types have names like goshawk_msgs/msg/Path"
+                                       : "did you mean " + near + "?"));
 }
 
 std::string ros_msg_definition(const Type& type) {

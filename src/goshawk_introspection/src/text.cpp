@@ -65,33 +65,38 @@ bool in_one_line(const Json& json) {
   return true;
 }
 
-void write(const Json& json, std::size_t indent, std::string& out);
+// "  # STATE_ARRIVED" behind the value of a constant, else nothing.
+std::string comment_of(const Field& field, const Json& value) {
+  for (const auto& constant : field.constants) {
+    if (value == constant.value) return fmt::format("  # {}", constant.name);
+  }
+  return {};
+}
 
-void write_value(const Json& value, std::size_t indent, std::string& out) {
-  if (in_one_line(value)) {
-    out += " " + to_line(value) + "\n";
-  } else {
-    out += "\n";
-    write(value, indent, out);
+void write(const Type& type, const Json& message, std::size_t indent, std::string& out);
+
+// A list of messages: a dash stands before each one's first field.
+void write_list(const Type& type, const Json& list, std::size_t indent, std::string& out) {
+  for (const auto& element : list) {
+    std::string inner;
+    write(type, element, indent + 2, inner);
+    inner.replace(indent, 2, "- ");
+    out += inner;
   }
 }
 
-void write(const Json& json, std::size_t indent, std::string& out) {
-  const std::string margin(indent, ' ');
-  if (json.is_array()) {
-    for (const auto& element : json) {
-      std::string inner;
-      write(element, indent + 2, inner);
-      inner.replace(indent, 2, "- ");  // the dash stands where the first key's margin was
-      out += inner;
+void write(const Type& type, const Json& message, std::size_t indent, std::string& out) {
+  for (const auto& field : type.fields) {
+    const Json& value = message.at(std::string(field.name));
+    out += std::string(indent, ' ') + std::string(field.name) + ":";
+    if (in_one_line(value)) {
+      out += " " + to_line(value) + comment_of(field, value) + "\n";
+      continue;
     }
-  } else if (json.is_object()) {
-    for (const auto& [name, value] : json.items()) {
-      out += margin + name + ":";
-      write_value(value, indent + 2, out);
-    }
-  } else {
-    out += margin + to_line(json) + "\n";
+    out += "\n";
+    const Type& inner = all_types()[std::size_t(field.type)];
+    value.is_array() ? write_list(inner, value, indent + 2, out)
+                     : write(inner, value, indent + 2, out);
   }
 }
 
@@ -112,9 +117,9 @@ std::string to_line(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-std::string to_yaml(const Json& json) {
+std::string to_yaml(const Type& type, const Json& json) {
   std::string out;
-  write(json, 0, out);
+  write(type, json, 0, out);
   return out;
 }
 

@@ -62,7 +62,7 @@ using Messages =
                    goshawk_msgs::msg::VoxelGridUpdate, goshawk_msgs::msg::PlanRequest,
                    goshawk_msgs::msg::Path, goshawk_msgs::msg::Corridor,
                    goshawk_msgs::msg::BezierTrajectory, goshawk_msgs::msg::CommittedTrajectory,
-                   goshawk_msgs::msg::ThrustAttitude, goshawk_msgs::msg::StageReport,
+                   goshawk_msgs::msg::AttitudeSetpoint, goshawk_msgs::msg::StageReport,
                    goshawk_msgs::msg::NavigatorState, goshawk_msgs::msg::TrackingState,
                    goshawk_msgs::msg::ParameterAnswer, goshawk_msgs::msg::VehicleStatus>;
 TYPED_TEST_SUITE(EveryMessage, Messages);
@@ -120,6 +120,18 @@ TYPED_TEST(EveryMessage, SurvivesFlippedBitsWithoutClaimingMemory) {
 
 const Type& type(const char* name) {
   return **find_type(name);
+}
+
+TEST(JsonToCdr, TakesTheNameOfAConstant) {
+  const Type& state = type("goshawk_msgs/msg/NavigatorState");
+  const auto named = json_to_cdr(state, Json{{"state", "STATE_ARRIVED"}});
+  ASSERT_TRUE(named) << named.error().message;
+  EXPECT_EQ(*named, *json_to_cdr(state, Json{{"state", 3}}));
+  EXPECT_EQ((*cdr_to_json(state, *named))["state"], 3);
+  const auto unknown = json_to_cdr(state, Json{{"state", "ARRIVED"}});
+  ASSERT_FALSE(unknown);
+  EXPECT_THAT(unknown.error().message, HasSubstr("STATE_IDLE, STATE_PLANNING"));
+  EXPECT_FALSE(json_to_cdr(type("goshawk_msgs/msg/BezierPiece"), Json{{"polytope", "NAME"}}));
 }
 
 TEST(CdrToJson, ReadsBothByteOrders) {

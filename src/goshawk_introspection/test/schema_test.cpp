@@ -52,6 +52,19 @@ TEST(Schema, KeepsFieldsAsTheIdlHasThem) {
   EXPECT_THAT(std::string(piece.comment), HasSubstr("quintic Bezier curve"));
 }
 
+TEST(Schema, GivesConstantsToTheFieldThatTheyName) {
+  const Type& state = **find_type("goshawk_msgs/msg/NavigatorState");
+  for (const auto& field : state.fields) {
+    EXPECT_EQ(field.constants.empty(), field.name != "state") << field.name;
+  }
+  const auto constants = state.fields[1].constants;
+  ASSERT_EQ(constants.size(), 5u);
+  EXPECT_EQ(constants[3].name, "STATE_ARRIVED");
+  EXPECT_EQ(constants[3].value, 3u);
+  EXPECT_THAT(*ros_msg_definition(state),
+              HasSubstr("uint8 STATE_ARRIVED=3\nuint8 STATE_FAILED=4\nuint8 state  # "));
+}
+
 TEST(Schema, CommentsEveryFieldWithUnitOrMeaning) {
   for (const auto& type : all_types()) {
     for (const auto& field : type.fields) {

@@ -57,7 +57,7 @@ class MapServerComponent : public Component {
           return success();
         })),
         map_(make_map(config_)),
-        reporter_(node, "octomap"),
+        reporter_(node, StageRole::map_server, "octomap"),
         voxels_(node.advertise<msg::VoxelGrid>("map/voxels", Qos::latched())),
         updates_(
             node.advertise<msg::VoxelGridUpdate>("map/voxels/updates", Qos::reliable_last(50))),

@@ -33,8 +33,8 @@ std::string format(const char* form, Numbers... numbers) {
   return text;
 }
 
-// A rotor that turns clockwise twists the body the other way: the sign of its last number. Order
-// and senses as in simulator::Mixer: front left, rear left, rear right, front right.
+// A rotor twists the body against its own sense of turning: the sign of kTwist. Order and senses as
+// in simulator::Mixer: front left, rear left, rear right, front right.
 std::string model_text(const VehicleParameters& p) {
   const double lever_m = p.arm_length_m / std::sqrt(2.0);
   const double twist_m = p.torque_coefficient_nm_s2 / p.thrust_coefficient_n_s2;

@@ -18,6 +18,8 @@ namespace {
 
 using goshawk_msgs::msg::NavigatorState;
 using goshawk_msgs::msg::StageReport;
+using goshawk_msgs::msg::VehicleStatus;
+namespace VehicleStatus_Constants = goshawk_msgs::msg::VehicleStatus_Constants;
 using runtime::MessageInfo;
 using runtime::Qos;
 
@@ -42,7 +44,7 @@ class SilentPilot {
   SilentPilot(runtime::Context& context, Role role) : node_(context, "pilot"), role_(role) {
     node_.run_in_lock_step();
     alive_ = node_.advertise<NavigatorState>("navigator_alive", Qos::best_effort());
-    commands_ = node_.advertise<goshawk_msgs::msg::ThrustAttitude>("command", Qos::best_effort());
+    commands_ = node_.advertise<goshawk_msgs::msg::AttitudeSetpoint>("command", Qos::best_effort());
     maps_ = node_.advertise<goshawk_msgs::msg::VoxelGrid>("map/voxels", Qos::latched());
     node_.subscribe<nav_msgs::msg::Odometry>(
         "odom", Qos::best_effort(), [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) {
@@ -51,6 +53,8 @@ class SilentPilot {
     node_.subscribe<StageReport>(
         "stage_report", Qos::latched(100),
         [this](const StageReport& m, const MessageInfo&) { said_ += m.code() + "; "; });
+    node_.subscribe<VehicleStatus>("vehicle_status", Qos::best_effort(),
+                                   [this](const VehicleStatus& m, const MessageInfo&) { take(m); });
     node_.every(0.02, [this] { show_life(); });
   }
 
@@ -71,16 +75,31 @@ class SilentPilot {
   double height_m() const { return height_m_; }
   bool heard(const std::string& code) const { return said_.find(code) != std::string::npos; }
   const std::string& said() const { return said_; }
+  /// Who flew, in the order of vehicle_status: "autopilot, goshawk, autopilot in failsafe".
+  const std::string& control() const { return control_; }
 
  private:
+  void take(const VehicleStatus& m) {
+    EXPECT_TRUE(m.armed());
+    EXPECT_EQ(m.battery(), -1.0) << "a simulated one is not known";
+    EXPECT_EQ(m.resets(), 0U);
+    const std::string now =
+        std::string(m.control() == VehicleStatus_Constants::CONTROL_GOSHAWK     ? "goshawk"
+                    : m.control() == VehicleStatus_Constants::CONTROL_AUTOPILOT ? "autopilot"
+                                                                                : "other") +
+        (m.failsafe() ? " in failsafe" : "");
+    if (control_.ends_with(now)) return;
+    control_ += (control_.empty() ? "" : ", ") + now;
+  }
+
   void show_life() {
     if (node_.now_ns() > kSilentAfter_ns) return;
     if (role_ == Role::navigator) {
       EXPECT_TRUE(alive_.publish(NavigatorState{}));
       return;
     }
-    goshawk_msgs::msg::ThrustAttitude hover;
-    conversions::fill_msg(ThrustAttitude{.thrust_n = kGravity_m_s2}, hover);
+    goshawk_msgs::msg::AttitudeSetpoint hover;
+    conversions::fill_msg(AttitudeSetpoint{.thrust_n = kGravity_m_s2}, hover);
     hover.header(conversions::make_header(node_.now_ns()));
     EXPECT_TRUE(commands_.publish(hover));
   }
@@ -88,10 +107,11 @@ class SilentPilot {
   runtime::Node node_;
   Role role_;
   runtime::Publisher<NavigatorState> alive_;
-  runtime::Publisher<goshawk_msgs::msg::ThrustAttitude> commands_;
+  runtime::Publisher<goshawk_msgs::msg::AttitudeSetpoint> commands_;
   runtime::Publisher<goshawk_msgs::msg::VoxelGrid> maps_;
   double height_m_ = 0.0;
   std::string said_;
+  std::string control_;
 };
 
 // No map, a map with something below, and one without: it holds, holds, and lands.
@@ -106,7 +126,7 @@ void expect_to_land_only_where_the_map_allows(SilentPilot& pilot) {
 }
 
 std::unique_ptr<runtime::Context> make_context() {
-  static const int domain = runtime::hold_private_domain();
+  static const int domain = runtime::hold_private_domain().value();
   runtime::ContextOptions options;
   options.domain = domain;
   setenv("ROS_DOMAIN_ID", std::to_string(domain).c_str(), 1);
@@ -131,6 +151,7 @@ TEST(Landing, AnAutopilotWithoutCommandsLandsWhereTheMapAllowsIt) {
                          "speed:=0", "-p", "failsafe_hold_s:=0.5"});
   expect_to_land_only_where_the_map_allows(pilot);
   EXPECT_TRUE(pilot.heard("tracking_lost")) << pilot.said();
+  EXPECT_EQ(pilot.control(), "autopilot, goshawk, autopilot in failsafe");
 }
 
 }  // namespace

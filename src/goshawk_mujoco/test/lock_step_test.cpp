@@ -8,6 +8,7 @@
 
 #include "geometry_msgs.h"
 #include "goshawk/conversions/plan.hpp"
+#include "goshawk/conversions/status.hpp"
 #include "goshawk/conversions/vehicle.hpp"
 #include "goshawk/runtime/node.hpp"
 #include "goshawk/runtime/private_domain.hpp"
@@ -37,8 +38,9 @@ class Pilot {
     node_.subscribe<PlanRequest>("plan_request", Qos::reliable_last(),
                                  [this](const PlanRequest& m, const MessageInfo&) { plan(m); });
     node_.subscribe<NavigatorState>(
-        "navigator_state", Qos::latched(20),
-        [this](const NavigatorState& m, const MessageInfo&) { said += m.state() + " "; });
+        "navigator_state", Qos::latched(20), [this](const NavigatorState& m, const MessageInfo&) {
+          said += std::string(conversions::navigator_state_word(m.state())) + " ";
+        });
     node_.subscribe<nav_msgs::msg::Odometry>(
         "odom", Qos::best_effort(),
         [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) { odometry.push_back(m); });
@@ -96,7 +98,7 @@ struct Flown {
 
 Flown fly(const std::string& plant, const std::vector<std::string>& parameters) {
   runtime::ContextOptions options;
-  static const int domain = runtime::hold_private_domain();
+  static const int domain = runtime::hold_private_domain().value();
   options.domain = domain;
   setenv("ROS_DOMAIN_ID", std::to_string(options.domain).c_str(), 1);
   std::vector<std::string> plant_call{plant + ":simulator",

@@ -1,3 +1,4 @@
+#include "goshawk/conversions/status.hpp"
 #include "goshawk/conversions/vehicle.hpp"
 #include "goshawk/navigator/navigator.hpp"
 #include "goshawk/runtime/component.hpp"
@@ -17,6 +18,16 @@ std::uint64_t first_id(std::int64_t now_ns) {
   return std::max<std::uint64_t>(1, std::uint64_t(now_ns / 1'000'000));
 }
 
+std::uint8_t to_msg(State state) {
+  namespace constants = goshawk_msgs::msg::NavigatorState_Constants;
+  static_assert(std::uint8_t(State::idle) == constants::STATE_IDLE &&
+                std::uint8_t(State::planning) == constants::STATE_PLANNING &&
+                std::uint8_t(State::flying) == constants::STATE_FLYING &&
+                std::uint8_t(State::arrived) == constants::STATE_ARRIVED &&
+                std::uint8_t(State::failed) == constants::STATE_FAILED);
+  return std::uint8_t(state);
+}
+
 constexpr double kAlive_s = 0.5;  // the newest state again: the tracker lands without it
 
 /// goal_pose, odom, trajectory, stage_report -> plan_request, committed_trajectory,
@@ -28,7 +39,7 @@ class NavigatorComponent : public Component {
       : node_(node),
         config_(node.parameters<Config>([this](const Config& c) { return reconfigure(c); })),
         navigator_(config_, first_id(node.now_ns())),
-        reporter_(node, "navigator"),
+        reporter_(node, StageRole::navigator, "navigator"),
         requests_(node.advertise<msg::PlanRequest>("plan_request", Qos::reliable_last())),
         commits_(node.advertise<msg::CommittedTrajectory>("committed_trajectory", Qos::latched())),
         states_(node.advertise<msg::NavigatorState>("navigator_state", Qos::latched(20))),
@@ -83,9 +94,9 @@ class NavigatorComponent : public Component {
     }
     if (!status) {
       reporter_.fault(status.error());
-      // Whoever waits for the answer to this goal reads navigator_state.
+      // The sender of this goal waits for its answer on navigator_state.
       if (navigator_.state() != State::flying && navigator_.state() != State::planning) {
-        publish(StateOrder{State::failed, 0, Vec3::Zero(), status.error()});
+        publish(StateOrder{.state = State::failed, .reason = status.error()});
       }
     }
     carry_out();
@@ -94,7 +105,7 @@ class NavigatorComponent : public Component {
   void on_trajectory(const msg::BezierTrajectory& m, const MessageInfo& info) {
     auto candidate = candidate_of(m);
     if (!candidate) {
-      navigator_.on_report(m.request().id(), "trajectory_optimizer", candidate.error(),
+      navigator_.on_report(m.request().id(), StageRole::trajectory_optimizer, candidate.error(),
                            node_.monotonic_ns());
       reporter_.failed(m.request().id(), candidate.error());
     } else {
@@ -121,7 +132,8 @@ class NavigatorComponent : public Component {
     for (const ErrorCode code : all_error_codes()) {
       if (to_string(code) == m.code()) outcome.code = code;
     }
-    navigator_.on_report(m.request_id(), m.stage(), outcome, node_.monotonic_ns());
+    navigator_.on_report(m.request_id(), conversions::stage_role_of(m.stage()), outcome,
+                         node_.monotonic_ns());
     carry_out();
   }
 
@@ -160,8 +172,9 @@ class NavigatorComponent : public Component {
   void publish(const StateOrder& order) {
     auto& m = state_message_;
     m.header(conversions::make_header(node_.now_ns()));
-    m.state(std::string(to_string(order.state)));
+    m.state(to_msg(order.state));
     m.request_id(order.id);
+    m.flown_request_id(order.flown_id);
     m.goal(conversions::to_point(order.goal_map));
     m.code(std::string(to_string(order.reason.code)));
     m.message(order.reason.message);

@@ -19,11 +19,11 @@ constexpr double kSwitchSlack_s = 0.02;
 // Failures that pass by themselves are tried again after this time.
 constexpr double kRetryDelay_s = 0.2;
 
-constexpr std::array<std::string_view, 3> kPlanningStages{"path_search", "corridor_builder",
-                                                          "trajectory_optimizer"};
+constexpr std::array kPlanningStages{StageRole::path_search, StageRole::corridor_builder,
+                                     StageRole::trajectory_optimizer};
 
 // The stage after the last one that answered.
-std::string_view next_stage(std::string_view last) {
+StageRole next_stage(StageRole last) {
   const auto at = std::ranges::find(kPlanningStages, last);
   if (at == kPlanningStages.end()) return kPlanningStages.front();
   return at + 1 == kPlanningStages.end() ? kPlanningStages.back() : *(at + 1);
@@ -101,9 +101,9 @@ void Navigator::on_trajectory(Commitment candidate, std::int64_t now_ns) {
   enter(State::flying);
 }
 
-void Navigator::on_report(std::uint64_t id, std::string_view stage, const Error& outcome,
+void Navigator::on_report(std::uint64_t id, StageRole stage, const Error& outcome,
                           std::int64_t now_ns) {
-  if (stage == "tracker") {
+  if (stage == StageRole::tracker) {
     if (flight_ && id == flight_->committed.id() && outcome.code != ErrorCode::ok) {
       tracker_failed(outcome, now_ns);
     }
@@ -113,7 +113,7 @@ void Navigator::on_report(std::uint64_t id, std::string_view stage, const Error&
   if (outcome.code == ErrorCode::ok) {
     open_->last_stage = stage;
   } else {
-    const Error reason{outcome.code, std::string(stage) + ": " + outcome.message};
+    const Error reason{outcome.code, fmt::format("{}: {}", to_string(stage), outcome.message)};
     open_.reset();  // it is answered: nothing to drop
     passes_by_itself(outcome.code) ? plan_again(reason, now_ns) : give_up(reason);
   }
@@ -174,7 +174,8 @@ Navigator::Start Navigator::start_at_rest() const {
 
 void Navigator::ask(const Start& start, std::int64_t now_ns) {
   ++attempts_;
-  open_ = Open{next_id_++, now_ns, start.time_ns, ""};
+  newest_id_ = next_id_++;
+  open_ = Open{.id = newest_id_, .asked_ns = now_ns, .switch_ns = start.time_ns};
   PlanRequest request;
   request.id = open_->id;
   request.stamp_ns = now_ns;
@@ -246,7 +247,7 @@ void Navigator::check_silence(std::int64_t now_ns) {
                   fmt::format(
                       "{} did not answer request {} within {:.3g} s: is it running, in this domain "
                       "and namespace?",
-                      next_stage(open_->last_stage), open_->id, config_.plan_timeout_s)),
+                      to_string(next_stage(open_->last_stage)), open_->id, config_.plan_timeout_s)),
              now_ns);
 }
 
@@ -260,8 +261,11 @@ bool Navigator::odometry_is_fresh(std::int64_t now_ns) const {
 
 void Navigator::enter(State state, Error reason) {
   state_ = state;
-  const std::uint64_t id = open_ ? open_->id : flight_ ? flight_->committed.id() : 0;
-  orders_.push_back(StateOrder{state, id, goal_.position_map, std::move(reason)});
+  orders_.push_back(StateOrder{.state = state,
+                               .id = newest_id_,
+                               .flown_id = flight_ ? flight_->committed.id() : 0,
+                               .goal_map = goal_.position_map,
+                               .reason = std::move(reason)});
 }
 
 }  // namespace goshawk::navigator

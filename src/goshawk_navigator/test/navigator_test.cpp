@@ -71,7 +71,8 @@ class Harness {
   /// All stages answer the newest request.
   void answer(double duration_s = 4.0) {
     const PlanRequest request = plans.back();
-    for (const char* stage : {"path_search", "corridor_builder", "trajectory_optimizer"}) {
+    for (const StageRole stage :
+         {StageRole::path_search, StageRole::corridor_builder, StageRole::trajectory_optimizer}) {
       navigator.on_report(request.id, stage, ok(), now);
     }
     const std::size_t before = commits.size();
@@ -115,6 +116,7 @@ TEST(Navigator, FliesFromRestToTheGoalAndSaysSo) {
   EXPECT_EQ(h.plans[0].start.velocity, Vec3::Zero());
   EXPECT_EQ(h.plans[0].goal.position, kGoal);
   EXPECT_EQ(h.last().state, State::planning);
+  EXPECT_EQ(h.last().flown_id, 0u);
   h.answer();
   ASSERT_EQ(h.commits.size(), 1u);
   EXPECT_EQ(h.commits[0].start_time_ns(), h.now + kSecond / 20);
@@ -123,6 +125,7 @@ TEST(Navigator, FliesFromRestToTheGoalAndSaysSo) {
   EXPECT_EQ(h.navigator.state(), State::flying);
   h.pass(0.5);
   EXPECT_EQ(h.navigator.state(), State::arrived);
+  EXPECT_EQ(h.last().flown_id, 100u) << "its end is held";
   EXPECT_EQ(h.plans.size(), 1u) << "one plan was enough";
 }
 
@@ -133,6 +136,8 @@ TEST(Navigator, ReplansInFlightFromTheStateThatTheTrajectoryWillHave) {
   h.pass(1.5);
   h.goal(Vec3(2, 3, 1));
   ASSERT_EQ(h.plans.size(), 2u);
+  EXPECT_EQ(h.last().id, h.plans[1].id) << "the newest request ...";
+  EXPECT_EQ(h.last().flown_id, h.plans[0].id) << "... is not yet what is flown";
   const auto& [first, start_ns] = h.flown[0];
   const double switch_s = double(h.now - start_ns) * 1e-9 + 0.3;
   const FlatState expected = first.sample(switch_s);
@@ -197,7 +202,8 @@ TEST(Navigator, ANewGoalOrATimeoutSupersedesTheOpenRequestAndAnAnswerDoesNot) {
   h.pass(1.3);
   ASSERT_EQ(h.plans.size(), 3u);
   EXPECT_EQ(h.plans[2].supersedes, h.plans[1].id) << "nobody answered";
-  h.navigator.on_report(h.plans[2].id, "path_search", {ErrorCode::no_map, "no map"}, h.now);
+  h.navigator.on_report(h.plans[2].id, StageRole::path_search, {ErrorCode::no_map, "no map"},
+                        h.now);
   h.pass(0.3);
   ASSERT_EQ(h.plans.size(), 4u);
   EXPECT_EQ(h.plans[3].supersedes, 0u) << "the search said why not";
@@ -274,7 +280,7 @@ TEST(Navigator, AFailedReplanLeavesTheVehicleOnItsTrajectory) {
   h.answer();
   h.pass(1.0);
   h.goal(Vec3(90, 0, 1));
-  h.navigator.on_report(h.plans.back().id, "path_search",
+  h.navigator.on_report(h.plans.back().id, StageRole::path_search,
                         {ErrorCode::goal_outside, "goal is outside the map"}, h.now);
   h.take();
   EXPECT_EQ(h.last().state, State::failed);
@@ -292,12 +298,12 @@ TEST(Navigator, NamesTheStageThatIsSilentAndGivesUpInTheEnd) {
   config.max_attempts = 3;
   Harness h(config);
   h.goal(kGoal);
-  h.navigator.on_report(h.plans.back().id, "path_search", ok(), h.now);
+  h.navigator.on_report(h.plans.back().id, StageRole::path_search, ok(), h.now);
   h.pass(1.5);
   EXPECT_EQ(h.plans.size(), 2u) << "asked again";
-  h.navigator.on_report(h.plans.back().id, "path_search", ok(), h.now);
+  h.navigator.on_report(h.plans.back().id, StageRole::path_search, ok(), h.now);
   h.pass(1.2);
-  h.navigator.on_report(h.plans.back().id, "path_search", ok(), h.now);
+  h.navigator.on_report(h.plans.back().id, StageRole::path_search, ok(), h.now);
   h.pass(5.0);
   EXPECT_EQ(h.plans.size(), 3u);
   EXPECT_EQ(h.last().state, State::failed);
@@ -320,10 +326,12 @@ TEST(Navigator, FliesWhenARestartedStageAnswersALaterAttempt) {
 TEST(Navigator, AsksAgainIfTheMapHasNotComeYetButNotIfThereIsNoPath) {
   Harness h;
   h.goal(kGoal);
-  h.navigator.on_report(h.plans.back().id, "path_search", {ErrorCode::no_map, "no map"}, h.now);
+  h.navigator.on_report(h.plans.back().id, StageRole::path_search, {ErrorCode::no_map, "no map"},
+                        h.now);
   h.pass(0.5);
   EXPECT_EQ(h.plans.size(), 2u);
-  h.navigator.on_report(h.plans.back().id, "path_search", {ErrorCode::no_path, "cut off"}, h.now);
+  h.navigator.on_report(h.plans.back().id, StageRole::path_search, {ErrorCode::no_path, "cut off"},
+                        h.now);
   h.pass(3.0);
   EXPECT_EQ(h.plans.size(), 2u);
   EXPECT_EQ(h.last().reason.code, ErrorCode::no_path);
@@ -335,7 +343,8 @@ TEST(Navigator, PlansAgainFromRestIfTheTrackerRefuses) {
   h.answer();
   const std::uint64_t refused = h.commits[0].id();
   h.flown.clear();  // the vehicle stays where it is
-  h.navigator.on_report(refused, "tracker", {ErrorCode::not_at_start, "0.9 m away"}, h.now);
+  h.navigator.on_report(refused, StageRole::tracker, {ErrorCode::not_at_start, "0.9 m away"},
+                        h.now);
   h.take();
   EXPECT_EQ(h.last().state, State::planning);
   EXPECT_THAT(h.last().reason.message, HasSubstr("0.9 m away"));

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <functional>
+
 #include "goshawk/path_search/config.hpp"
 #include "goshawk/path_search/path_search.hpp"
 #include "goshawk/runtime/component.hpp"
@@ -26,12 +28,11 @@ class PathSearchComponent : public Component {
       : node_(node),
         config_(node.parameters<Config>([this](const Config& c) { return reconfigure(c); })),
         search_(make_search(config_)),
-        reporter_(node, std::string(search_.planner_name())),
+        reporter_(node, StageRole::path_search, std::string(search_.planner_name())),
         publisher_(node.advertise<msg::Path>("path", Qos::reliable_last())),
-        map_(node, reporter_, [this](const auto& grid) { search_.set_map(grid); }) {
-    node.subscribe<msg::PlanRequest>(
-        "plan_request", Qos::reliable_last(),
-        [this](const msg::PlanRequest& m, const MessageInfo& info) { on_request(m, info); });
+        map_(node, reporter_, [this](const auto& grid) { search_.set_map(grid); }),
+        requests_(node, reporter_, "plan_request",
+                  std::bind_front(&PathSearchComponent::on_request, this)) {
     reporter_.ready(
         fmt::format("searches with {}, {}", search_.planner_name(), to_word(config_.corner_rule)));
   }
@@ -44,15 +45,12 @@ class PathSearchComponent : public Component {
     return success();
   }
 
-  void on_request(const msg::PlanRequest& m, const MessageInfo& info) {
-    Timing timing{.wire_ns = wire_time_ns(m.header(), info)};
-    const auto request = open_request(m, node_.now_ns(), reporter_, timing);
-    if (!request) return;
-    auto [path, compute_ns] = timed([&] { return search_.plan(*request, stop_of(*request)); });
+  void on_request(const msg::PlanRequest& m, const PlanRequest& request, Timing timing) {
+    auto [path, compute_ns] = timed([&] { return search_.plan(request, stop_of(request)); });
     timing.compute_ns = compute_ns;
-    if (!path) return reporter_.failed(request->id, path.error(), timing);
+    if (!path) return reporter_.failed(request.id, path.error(), timing);
     publish(m, *path, compute_ns);
-    report(request->id, *path, timing);
+    report(request.id, *path, timing);
   }
 
   /// What is left of the request's deadline.
@@ -104,6 +102,7 @@ class PathSearchComponent : public Component {
   StageReporter reporter_;
   Publisher<msg::Path> publisher_;
   MapSubscription map_;
+  Intake<msg::PlanRequest> requests_;
 };
 
 }  // namespace

@@ -1,8 +1,9 @@
 #include "goshawk/plant/vehicle_parameters.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Eigenvalues>
 #include <cmath>
-#include <cstdio>
 
 namespace goshawk::plant {
 namespace {
@@ -13,24 +14,18 @@ class Faults {
 
   bool positive(const char* name, double value) {
     if (std::isfinite(value) && value > 0.0) return true;
-    add(std::string(name) + " is " + number(value) + " and must be finite and above zero");
+    add(fmt::format("{} is {:.6g}: it must be finite and above zero", name, value));
     return false;
   }
 
   void not_negative(const char* name, double value) {
     if (std::isfinite(value) && value >= 0.0) return;
-    add(std::string(name) + " is " + number(value) + " and must be finite and not below zero");
-  }
-
-  static std::string number(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.6g", value);
-    return text;
+    add(fmt::format("{} is {:.6g}: it must be finite and not below zero", name, value));
   }
 
   Status status() const {
     if (text_.empty()) return success();
-    return fail(ErrorCode::invalid_parameter, "the vehicle cannot be: " + text_);
+    return fail(ErrorCode::invalid_parameter, "physically invalid vehicle: " + text_);
   }
 
  private:
@@ -48,11 +43,15 @@ void check_inertia(const Eigen::Matrix3d& inertia, Faults& faults) {
       Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(inertia, Eigen::EigenvaluesOnly)
           .eigenvalues();  // in increasing order
   if (!(moments[0] > 0.0)) {
-    faults.add("the inertia is not positive definite (smallest principal moment " +
-               Faults::number(moments[0]) + " kg m^2)");
+    faults.add(
+        fmt::format("the inertia is not positive definite: its smallest principal moment is "
+                    "{:.6g} kg m^2",
+                    moments[0]));
   } else if (moments[2] > (moments[0] + moments[1]) * (1.0 + 1e-12)) {
-    faults.add("the inertia breaks the triangle inequality: its largest principal moment " +
-               Faults::number(moments[2]) + " kg m^2 is above the sum of the other two");
+    faults.add(
+        fmt::format("the inertia breaks the triangle inequality: its largest principal moment, "
+                    "{:.6g} kg m^2, is above the sum of the other two",
+                    moments[2]));
   }
 }
 
@@ -79,8 +78,10 @@ Status VehicleParameters::check() const {
   faults.not_negative("linear_drag_z_kg_s", linear_drag_z_kg_s);
   faults.not_negative("quadratic_drag_kg_m", quadratic_drag_kg_m);
   if (has_mass && has_thrust && !(max_thrust_n() > weight_n())) {
-    faults.add("four motors of max_motor_thrust_n give " + Faults::number(max_thrust_n()) +
-               " N, which does not lift a weight of " + Faults::number(weight_n()) + " N");
+    faults.add(
+        fmt::format("four motors of max_motor_thrust_n give {:.6g} N, which does not lift a "
+                    "weight of {:.6g} N",
+                    max_thrust_n(), weight_n()));
   }
   return faults.status();
 }

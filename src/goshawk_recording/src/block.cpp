@@ -1,6 +1,7 @@
 #include "block.hpp"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
 #include <zstd.h>
@@ -10,15 +11,15 @@
 namespace goshawk::recording {
 namespace {
 
-// [byte] a chunk that claims more is not believed: a few bytes can unpack to any size.
+// [byte] a chunk that claims more is refused: a few bytes can unpack to any size.
 constexpr std::uint64_t kMostInChunk = 1ULL << 30;
 
 Error damaged(const Block& block, const std::string& what) {
   return fail(ErrorCode::invalid_input,
-              "the chunk at byte " + std::to_string(block.offset) + " is damaged: " + what);
+              fmt::format("the chunk at byte {} is damaged: {}", block.offset, what));
 }
 
-// Grows with what really comes out, not with what is claimed.
+// Grows with what is unpacked, not with what is claimed.
 Result<Bytes> unpack(const Block& block, View packed) {
   const std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> context(ZSTD_createDCtx(),
                                                                      &ZSTD_freeDCtx);
@@ -34,9 +35,9 @@ Result<Bytes> unpack(const Block& block, View packed) {
     if (ZSTD_isError(left)) return damaged(block, ZSTD_getErrorName(left));
     const bool more_room = to.pos < to.size;
     filled = to.pos;
-    if (filled == most) return damaged(block, "more is in it than it says");
+    if (filled == most) return damaged(block, "it holds more than it claims");
     if (left == 0 || (more_room && in.pos == in.size)) {
-      out.resize(filled);  // fewer than claimed are found out by who asked
+      out.resize(filled);  // the caller notices if there are fewer than claimed
       return out;
     }
   }
@@ -94,19 +95,20 @@ std::optional<Block> chunk_of(View head, std::uint64_t offset, std::uint64_t siz
 
 Result<Bytes> load(const File& file, const Block& block) {
   if (!block.compression.empty() && block.compression != "zstd") {
-    return damaged(
-        block, "its compression '" + block.compression + "' is not known here: zstd and none are");
+    return damaged(block, fmt::format("its compression '{}' is not supported: zstd and none are",
+                                      block.compression));
   }
   if (block.uncompressed_size > kMostInChunk) {
-    return damaged(block, "it claims " + std::to_string(block.uncompressed_size) + " bytes");
+    return damaged(block, fmt::format("it claims {} bytes", block.uncompressed_size));
   }
   auto packed = file.read(block.offset, block.size);
   if (!packed) return packed;
   auto records = block.compression.empty() ? std::move(packed) : unpack(block, *packed);
   if (!records) return records;
-  if (records->size() != block.uncompressed_size) return damaged(block, "its size is another");
+  if (records->size() != block.uncompressed_size)
+    return damaged(block, "its size differs from what it claims");
   if (block.crc != 0 && crc32_of(*records) != block.crc)
-    return damaged(block, "its CRC is another");
+    return damaged(block, "its CRC does not match");
   return records;
 }
 

@@ -7,7 +7,7 @@
 
 namespace goshawk::recording {
 
-/// A file that is read at any place.
+/// A file with random access.
 class File {
  public:
   static Result<File> open(const std::string& path);
@@ -19,7 +19,7 @@ class File {
   ~File();
 
   std::uint64_t size() const { return size_; }
-  /// @pre it lies in the file. @return io_failed where the disk says no
+  /// @pre it lies in the file. @return io_failed
   Result<Bytes> read(std::uint64_t at, std::uint64_t size) const;
 
  private:
@@ -31,7 +31,7 @@ class File {
   std::uint64_t size_;  // [byte] when it was opened
 };
 
-/// Messages that lie together: a chunk, or neighbours that stand outside of any.
+/// Messages that are stored together: a chunk, or neighbours outside chunks.
 struct Block {
   std::uint64_t offset = 0;  // [byte] in the file, of the records
   std::uint64_t size = 0;    // [byte] there
@@ -42,14 +42,14 @@ struct Block {
 };
 
 /// The chunk whose record's content begins with `head` and is `size` bytes long, at `offset` of
-/// the file. @return nothing where that is no chunk
+/// the file. @return nothing if that is not a chunk
 std::optional<Block> chunk_of(View head, std::uint64_t offset, std::uint64_t size);
 
-/// The records of a block. @return invalid_input where they are damaged: another CRC, another
-/// size than claimed, an unknown compression; io_failed
+/// The records of a block. @return invalid_input if they are damaged: a wrong CRC or size,
+/// or an unknown compression; io_failed
 Result<Bytes> load(const File& file, const Block& block);
 
-/// Calls take(opcode, content) for each record. @return whether the bytes were whole records
+/// Calls take(opcode, content) for each record. @return whether the bytes are whole records
 template <typename Take>
 bool for_each_record(View records, Take&& take) {
   In in(records);

@@ -13,7 +13,7 @@ class FileSink : public Sink {
  public:
   FileSink(std::string path, int descriptor) : path_(std::move(path)), descriptor_(descriptor) {}
   ~FileSink() override {
-    // Blocks that were reserved and not used go back; nothing can be done where that fails.
+    // Gives back blocks that were reserved but not used; if that fails, nothing can be done.
     if (reserved_ > size_ && ftruncate(descriptor_, off_t(size_)) != 0) reserved_ = size_;
     close(descriptor_);
   }
@@ -31,11 +31,11 @@ class FileSink : public Sink {
 
   Status reserve(std::uint64_t size) override {
     if (size_ + size <= reserved_) return success();
-    // The file's length stays; only blocks of the disk are claimed.
+    // Reserves blocks of the disk; the length of the file stays.
     if (fallocate(descriptor_, FALLOC_FL_KEEP_SIZE, off_t(size_), off_t(size)) == 0) {
       reserved_ = size_ + size;
     } else if (errno == ENOSPC || errno == EDQUOT || errno == EFBIG) {
-      return fault("has no more room");
+      return fault("cannot grow");
     }
     return success();
   }
@@ -44,7 +44,7 @@ class FileSink : public Sink {
     if (size == size_) return success();
     if (ftruncate(descriptor_, off_t(size)) != 0 ||
         lseek(descriptor_, off_t(size), SEEK_SET) != off_t(size)) {
-      return fault("cannot be cut");
+      return fault("cannot be truncated");
     }
     size_ = reserved_ = size;
     return success();
@@ -69,9 +69,9 @@ Result<std::unique_ptr<Sink>> create_file(const std::string& path, bool overwrit
   if (descriptor >= 0) return std::unique_ptr<Sink>(new FileSink(path, descriptor));
   if (errno == EEXIST) {
     return fail(ErrorCode::io_failed,
-                path + " exists already: choose another name, or allow to overwrite it");
+                path + " already exists: choose another name, or overwrite it");
   }
-  return fail(ErrorCode::io_failed, path + " cannot be made: " + std::strerror(errno));
+  return fail(ErrorCode::io_failed, path + " cannot be created: " + std::strerror(errno));
 }
 
 }  // namespace goshawk::recording

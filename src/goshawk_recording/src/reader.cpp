@@ -1,5 +1,6 @@
 #include "goshawk/recording/reader.hpp"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <queue>
 
@@ -8,7 +9,7 @@
 namespace goshawk::recording {
 namespace {
 
-constexpr std::uint64_t kMostOutside = 4 << 20;      // [byte] of messages outside of chunks at once
+constexpr std::uint64_t kMostOutside = 4 << 20;  // [byte] of messages outside chunks, read at once
 constexpr std::uint64_t kMostDefinition = 64 << 20;  // [byte] of a schema or a channel
 constexpr std::uint64_t kChunkHead = 64;             // [byte] chunk fields before the records
 
@@ -25,9 +26,9 @@ struct Reader::Impl {
   std::map<std::uint16_t, std::uint64_t> counts;
   std::uint64_t total = 0, start_ns = 0, end_ns = 0;
   std::vector<std::string> complaints;
-  bool complete = false;    // footer and magic are there
-  bool statistics = false;  // so is a count of messages
-  bool outside = false;     // the record before was a message outside of chunks
+  bool complete = false;    // it has a footer and the final magic
+  bool statistics = false;  // it has a count of messages
+  bool outside = false;     // the previous record was a message outside chunks
 
   Status scan();
   Status take_record(Opcode opcode, std::uint64_t at, std::uint64_t size);
@@ -45,8 +46,8 @@ struct Reader::Impl {
   }
 };
 
-// Walks from record to record, over what chunks hold. Definitions stand in the summary again, so
-// that a whole file needs no unpacking.
+// Walks from record to record without unpacking chunks: the summary of a whole file repeats all
+// definitions.
 Status Reader::Impl::scan() {
   std::uint64_t at = kMagic.size();
   while (!complete) {
@@ -57,14 +58,15 @@ Status Reader::Impl::scan() {
     const auto opcode = Opcode(in.number<std::uint8_t>());
     const auto size = in.number<std::uint64_t>();
     if (!in.good() || size > file.size() - at - kRecordHead) break;
-    if (opcode == Opcode{0}) break;  // no record: a file system's zeros after a loss of power
+    if (opcode == Opcode{0}) break;  // not a record: zeros of a file system after a loss of power
     if (auto status = take_record(opcode, at + kRecordHead, size); !status) return status;
     at += kRecordHead + size;
   }
   if (complete && at + kMagic.size() > file.size()) complete = false;
   if (!complete) {
-    complain("the recording ends in the middle, behind byte " + std::to_string(at) + " of " +
-             std::to_string(file.size()) + ": what is whole before that is read");
+    complain(
+        fmt::format("the recording is cut off after byte {} of {}: everything before that is read",
+                    at, file.size()));
   }
   const bool defined = std::ranges::all_of(
       counts, [&](const auto& entry) { return channels.contains(entry.first); });
@@ -87,13 +89,13 @@ Status Reader::Impl::take_record(Opcode opcode, std::uint64_t at, std::uint64_t 
     case Opcode::statistics:
       return take_small(opcode, at, size);
     default:
-      return success();  // indices, which are not believed, and what later versions may add
+      return success();  // indices, which are not trusted, and records of later versions
   }
 }
 
 Status Reader::Impl::take_small(Opcode opcode, std::uint64_t at, std::uint64_t size) {
   if (size > kMostDefinition) {
-    complain("the record at byte " + std::to_string(at) + " is too large for what it is");
+    complain(fmt::format("the record at byte {} exceeds the maximum length of its type", at));
     return success();
   }
   const auto content = file.read(at, size);
@@ -116,7 +118,7 @@ void Reader::Impl::define(Opcode opcode, View content) {
   } else {
     return;
   }
-  complain("a schema or a channel is damaged: its messages are left out");
+  complain("a schema or a channel is damaged: its messages are skipped");
 }
 
 Status Reader::Impl::take_chunk(std::uint64_t at, std::uint64_t size) {
@@ -125,7 +127,7 @@ Status Reader::Impl::take_chunk(std::uint64_t at, std::uint64_t size) {
   if (const auto block = chunk_of(*head, at, size)) {
     blocks.push_back(*block);
   } else {
-    complain("the chunk at byte " + std::to_string(at) + " is damaged: it is left out");
+    complain(fmt::format("the chunk at byte {} is damaged and skipped", at));
   }
   return success();
 }
@@ -136,7 +138,7 @@ Status Reader::Impl::take_message(std::uint64_t at, std::uint64_t size) {
   if (!head) return head.error();
   const auto message = message_of(*head);
   if (!message) {
-    complain("the message at byte " + std::to_string(at) + " is damaged: it is left out");
+    complain(fmt::format("the message at byte {} is damaged and skipped", at));
     outside = false;
     return success();
   }
@@ -165,7 +167,7 @@ void Reader::Impl::take_statistics(View content) {
     const auto channel = map.number<std::uint16_t>();
     by_channel[channel] = map.number<std::uint64_t>();
   }
-  if (!in.good() || !map.good()) return;  // counted by hand then
+  if (!in.good() || !map.good()) return;  // messages are counted instead
   total = messages;
   start_ns = first_ns;
   end_ns = last_ns;
@@ -194,7 +196,7 @@ Status Reader::Impl::count_all() {
   return success();
 }
 
-// The true first and last times as well: a chunk's own may be wrong.
+// Also finds the true first and last times: those in chunks may be wrong.
 void Reader::Impl::count(Block& block, View records) {
   block.start_ns = ~0ULL;
   block.end_ns = 0;
@@ -207,7 +209,7 @@ void Reader::Impl::count(Block& block, View records) {
     block.end_ns = std::max(block.end_ns, message->log_time_ns);
   });
   if (!whole) {
-    complain("the chunk at byte " + std::to_string(block.offset) + " ends in the middle");
+    complain(fmt::format("the chunk at byte {} is cut off", block.offset));
   }
   start_ns = std::min(start_ns, block.start_ns);
   end_ns = std::max(end_ns, block.end_ns);
@@ -225,7 +227,8 @@ Result<Reader> Reader::open(const std::string& path) {
   const auto magic = impl->file.read(0, kMagic.size());
   if (!magic) return magic.error();
   if (!std::ranges::equal(*magic, kMagic)) {
-    return fail(ErrorCode::invalid_input, path + " is no MCAP recording: it does not begin as one");
+    return fail(ErrorCode::invalid_input,
+                path + " is not an MCAP recording: its first bytes are wrong");
   }
   if (auto status = impl->scan(); !status) return status.error();
   return Reader(std::move(impl));
@@ -292,7 +295,7 @@ class Merge {
     MessageView message;
     std::uint64_t order;
     std::shared_ptr<const Bytes> owner;
-    bool operator<(const Item& other) const {  // the earliest is the greatest
+    bool operator<(const Item& other) const {  // the earliest compares greatest
       return std::pair(message.log_time_ns, order) >
              std::pair(other.message.log_time_ns, other.order);
     }

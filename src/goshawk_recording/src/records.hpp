@@ -10,7 +10,8 @@
 
 namespace goshawk::recording {
 
-static_assert(std::endian::native == std::endian::little, "MCAP is little-endian, and so is this");
+static_assert(std::endian::native == std::endian::little,
+              "MCAP is little-endian, and so is this code");
 
 inline constexpr std::array<unsigned char, 8> kMagic = {0x89, 'M', 'C', 'A', 'P', '0', '\r', '\n'};
 inline constexpr std::size_t kRecordHead = 9;  // [byte] opcode and length
@@ -29,7 +30,7 @@ enum class Opcode : std::uint8_t {
   data_end = 15
 };
 
-/// Appends numbers, strings and maps as MCAP has them.
+/// Appends numbers, strings and maps in MCAP's encoding.
 class Out {
  public:
   explicit Out(Bytes& bytes) : bytes_(bytes) {}
@@ -50,7 +51,7 @@ class Out {
     number(std::uint32_t(text.size()));
     return raw({reinterpret_cast<const unsigned char*>(text.data()), text.size()});
   }
-  /// The length in bytes goes before what `fill` appends.
+  /// Writes the length in bytes, then what `fill` appends.
   template <typename Length, typename Fill>
   Out& sized(Fill&& fill) {
     const auto at = bytes_.size();
@@ -70,7 +71,7 @@ class Out {
   Bytes& bytes_;
 };
 
-/// Reads them back. Whatever does not fit sets a flag, and zeros come from there on.
+/// Reads them back. Bytes that do not fit set a flag; everything after them reads as zero.
 class In {
  public:
   explicit In(View view) : view_(view) {}
@@ -110,12 +111,12 @@ void put(Out& out, const Schema& schema);
 void put(Out& out, const Channel& channel);
 void put(Out& out, const MessageView& message);
 
-/// Contents of records. @return nothing where the bytes are no such record
+/// Contents of records. @return nothing if the bytes are not such a record
 std::optional<Schema> schema_of(View content);
 std::optional<Channel> channel_of(View content);
 std::optional<MessageView> message_of(View content);
 
-/// CRC-32 as MCAP has it. @param crc of what came before
+/// CRC-32 as in MCAP. @param crc of the bytes before
 std::uint32_t crc32_of(View bytes, std::uint32_t crc = 0);
 
 }  // namespace goshawk::recording

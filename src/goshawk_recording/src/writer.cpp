@@ -57,14 +57,14 @@ struct Writer::Impl {
   WriterOptions options;
   std::unique_ptr<ZSTD_CCtx, decltype(&ZSTD_freeCCtx)> compressor{ZSTD_createCCtx(),
                                                                   &ZSTD_freeCCtx};
-  std::vector<Schema> schemas;    // id is the place + 1
-  std::vector<Channel> channels;  // likewise
+  std::vector<Schema> schemas;    // id is the index + 1
+  std::vector<Channel> channels;  // id is the index + 1
   std::map<std::uint16_t, std::uint64_t> channel_counts;
   std::vector<ChunkIndex> chunks;
   OpenChunk chunk;
-  Bytes compressed, pending;  // used again for each chunk
-  std::uint64_t size = 0;     // [byte] whole records in the sink
-  std::uint32_t crc = 0;      // of those
+  Bytes compressed, pending;  // reused for each chunk
+  std::uint64_t size = 0;     // [byte] of whole records in the sink
+  std::uint32_t crc = 0;      // of these bytes
   std::uint64_t summary_room = kFooterRoom;
   std::uint64_t start_ns = ~0ULL, end_ns = 0;
   WriterCounts counts;
@@ -112,8 +112,9 @@ void Writer::Impl::put_indices(Out& out, ChunkIndex& entry, std::uint64_t at) co
   entry.indices_length = pending.size() - before;
 }
 
-// Schemas and channels before any message: a chunk of no messages would begin in 1970, and readers
-// take that for the recording's beginning (@mcap/core 1.2), or refuse a chunk without indices.
+// Schemas and channels that come before any message are written outside chunks: a chunk without
+// messages would begin in 1970, which readers take for the start of the recording (@mcap/core 1.2),
+// or they refuse a chunk without indices.
 Status Writer::Impl::append_bare() {
   state = sink->reserve(chunk.records.size() + summary_room);
   if (state) state = append(chunk.records);
@@ -175,8 +176,8 @@ void Writer::Impl::put_statistics(Out& out) const {
   });
 }
 
-/// DataEnd, the groups of the summary, where each is, and the footer.
-/// @param at where in the file it begins
+/// DataEnd, the groups of the summary with their offsets, and the footer.
+/// @param at offset in the file
 Bytes Writer::Impl::summary(std::uint64_t at) const {
   Bytes bytes;
   Out out(bytes);
@@ -224,7 +225,7 @@ Result<Writer> Writer::create(std::unique_ptr<Sink> sink, const WriterOptions& o
   Out(head).record(Opcode::header, [&](Out& o) { o.text(options.profile).text(options.library); });
   auto status = impl->sink->reserve(head.size() + kFooterRoom);
   if (status) status = impl->append(head);
-  impl->closed = !status;  // nothing to close then
+  impl->closed = !status;  // then there is nothing to close
   if (!status) return status.error();
   return Writer(std::move(impl));
 }
@@ -283,7 +284,7 @@ Status Writer::close() {
   if (w.closed) return w.state;
   (void)w.close_chunk();
   w.closed = true;
-  // Half a chunk would be in the way of the summary, and its place may be the last there is.
+  // Removes half a chunk: the summary follows, and may need the disk's last bytes.
   if (auto cut = w.sink->cut(w.size); !cut) return w.state ? cut : w.state;
   const Bytes end = w.summary(w.size);
   if (auto status = w.sink->append(end); !status) {

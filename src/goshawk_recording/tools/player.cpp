@@ -13,10 +13,10 @@ namespace {
 using introspection::Interruptible;
 
 constexpr double kSlice_s = 0.05;   // how often a wait looks for Ctrl-C
-constexpr double kSettled_s = 0.7;  // nobody new for this long: all readers are found
+constexpr double kSettled_s = 0.7;  // no new reader for this long: all are found
 constexpr double kClockPeriod_s = 0.01;
 constexpr double kWord_s = 3.0;  // a longer wait is explained
-// A recorder takes topic by topic what has come: within this time it may be in another order.
+// A recorder serves topic by topic: messages within this time may be recorded in another order.
 constexpr std::uint64_t kDisorder_ns = 2'000'000'000;
 constexpr std::size_t kFragments_bytes = 60'000;  // larger messages arrive in parts
 
@@ -44,7 +44,7 @@ Player::Player(runtime::Node& node, Reader& reader, const std::set<std::uint16_t
     const auto profiles = channel.metadata.find(kQosKey);
     runtime::Qos qos =
         offered_by_player(profiles == channel.metadata.end() ? "" : profiles->second);
-    // How many its writer kept is not recorded: the newest map is all that counts of maps.
+    // The depth of its writer is not recorded; of maps only the newest one counts.
     if (qos.transient_local && is_large(type)) qos.depth = 1;
     const auto known = introspection::find_type(type);
     tracks_[id] = {
@@ -91,7 +91,7 @@ void Player::wait_for_turn_taker(const runtime::RawPublisher& turns, const std::
   bool said = false;
   while (!Interruptible::interrupted() && turns.matched() == 0) {
     if (!said && double(steady_ns() - begin) * 1e-9 > kWord_s) {
-      say_("waits for " + node + " to run with lock_step: true");
+      say_("waiting for " + node + " to run with lock_step: true");
       said = true;
     }
     node_.spin_some(kSlice_s);
@@ -132,7 +132,7 @@ Status Player::play_in_lock_step() {
   return played ? read : played;
 }
 
-// What came until then, in the order of publication.
+// Everything until then, in the order of publication.
 Status Player::play_held(std::uint64_t until_ns) {
   while (!held_.empty() && held_.begin()->second.log_time_ns <= until_ns &&
          !Interruptible::interrupted()) {
@@ -151,7 +151,7 @@ Status Player::play_in_order(Held& held) {
   if (track.turn_of.empty()) {
     ++published_;
     if (auto status = track.publisher.publish_raw(&held.data); !status) return status;
-    // Parts that were lost are sent again at some time: that must be before the next turn.
+    // Lost fragments are sent again later: they must arrive before the next turn.
     if (track.reliable && held.data.size() > kFragments_bytes) {
       (void)track.publisher.wait_acknowledged(options_.wait_s);
     }
@@ -162,7 +162,7 @@ Status Player::play_in_order(Held& held) {
   return success();
 }
 
-// After everybody's first turn they find each other, as in the flight.
+// After their first turns the nodes find each other, as in the flight.
 void Player::call_the_roll(const std::string& node) {
   const std::size_t all = options_.lock_step.size() + (options_.plant.empty() ? 0 : 1);
   if (roll_.insert(node).second && roll_.size() == all) settle(options_.wait_s);
@@ -185,7 +185,7 @@ Status Player::play_in_time() {
   return published ? read : published;
 }
 
-// Who starts in the middle finds the map and what else was latched as it was then.
+// A replay that starts in the middle first publishes latched topics as they were then.
 Status Player::publish_latched_before(std::uint64_t from_ns) {
   if (from_ns <= reader_.start_ns()) return success();
   std::set<std::uint16_t> latched;
@@ -230,7 +230,7 @@ void Player::publish_clock() {
   for (const std::uint32_t value : {sec, nanosec}) {
     for (int byte = 0; byte < 4; ++byte) bytes.push_back((unsigned char)(value >> (8 * byte)));
   }
-  (void)clock_.publish_raw(&bytes);  // best effort: the next one comes in a moment
+  (void)clock_.publish_raw(&bytes);  // best effort: the next one follows soon
 }
 
 void Player::finish() {

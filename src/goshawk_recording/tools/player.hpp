@@ -12,19 +12,19 @@
 
 namespace goshawk::recording {
 
-/// Publishes recorded messages as they were, at the times they came; in lock step, in the order in
-/// which they were published, without a pause, and no node does anything but in its turn.
+/// Publishes recorded messages with their recorded timing; in lock step in the order of their
+/// publication, without pauses, while each node runs only in its turn.
 class Player {
  public:
   /// @param options whose names are full. @throws StartupFault if a topic cannot be written
   Player(runtime::Node& node, Reader& reader, const std::set<std::uint16_t>& channels,
          ReplayOptions options, Say say);
 
-  /// Waits until those who read are found.
+  /// Waits until readers are found.
   void wait_for_readers();
   /// Plays all once. Ctrl-C ends it. @return io_failed
   Status play();
-  /// Waits until what was sent has arrived.
+  /// Waits until all messages have arrived.
   void finish();
 
   std::uint64_t published() const { return published_; }

@@ -15,15 +15,16 @@ namespace {
 using introspection::Interruptible;
 
 constexpr double kLookPeriod_s = 0.05;  // for new topics
-constexpr double kQuiet_s = 1.0;        // nothing new for so long: all that is there has been found
-constexpr double kNothing_s = 30.0;     // the world does not wait longer for topics that never come
-constexpr double kFlushPeriod_s = 1.0;  // what kill -9 may cost
+constexpr double kQuiet_s = 1.0;        // no new topic for this long: all have been found
+constexpr double kNothing_s =
+    30.0;  // simulated time does not wait longer for topics that never come
+constexpr double kFlushPeriod_s = 1.0;  // most that kill -9 may lose
 
-/// The machine's time, even if messages have simulated time.
+/// Real time, even if messages have simulated time.
 class Stopwatch {
  public:
   double seconds() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
-  /// @return whether period_s is over; it begins anew then
+  /// @return whether period_s is over; then it starts over
   bool lap(double period_s) {
     if (seconds() < period_s) return false;
     begin_ = Clock::now();
@@ -50,8 +51,8 @@ Result<std::unique_ptr<runtime::Context>> join_domain() {
   return runtime::Context::create(*options);
 }
 
-// In lock step the world stands still until this node has answered its first turn: not before
-// every topic that is there has been joined.
+// In lock step simulated time waits until this node has answered its first turn, which it does
+// after it has joined every topic.
 void join_all(const runtime::Context& context, const std::string& turns, Recorder& recorder,
               double most_s) {
   const Stopwatch whole;
@@ -80,7 +81,8 @@ void take_all(runtime::Node& node, Recorder& recorder, double duration_s, const 
     if (looked.lap(kLookPeriod_s)) recorder.join();
     if (flushed.lap(kFlushPeriod_s)) (void)recorder.flush();
   }
-  for (int k = 0; k < 4 && recorder.state(); ++k) node.spin_some(0.0);  // what has come already
+  for (int k = 0; k < 4 && recorder.state(); ++k)
+    node.spin_some(0.0);  // messages that have already arrived
 }
 
 }  // namespace

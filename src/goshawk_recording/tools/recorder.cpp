@@ -29,7 +29,7 @@ Recorder::Recorder(runtime::Context& context, runtime::Node& node, Writer writer
     : context_(context), node_(node), writer_(std::move(writer)), options_(std::move(options)) {}
 
 bool Recorder::wanted(const std::string& topic) const {
-  if (!topic.starts_with('/')) return false;  // no topic of ROS: a service, or discovery's own
+  if (!topic.starts_with('/')) return false;  // not a ROS topic: a service, or discovery's own
   if (introspection::matches(options_.exclude, topic)) return false;
   return options_.topics.empty() || introspection::matches(options_.topics, topic);
 }
@@ -51,13 +51,13 @@ void Recorder::join() {
 // A reader is served only by writers that offer what it asks for, of its type.
 void Recorder::check_late(const Track& track, const runtime::EndpointInfo& writer) {
   if (writer.type != track.type) {
-    say_once(fmt::format(
-        "{} is recorded as {}; another writer sends {} on it, which is not recorded", writer.topic,
-        track.type, writer.type));
+    say_once(
+        fmt::format("{} is recorded as {}; another writer sends {} on it, which is not recorded",
+                    writer.topic, track.type, writer.type));
   } else if (track.reliable > writer.reliable || track.transient_local > writer.transient_local) {
-    say_once(fmt::format(
-        "a writer of {} that came later offers less than those before: it is not recorded",
-        writer.topic));
+    say_once(
+        fmt::format("a later writer of {} offers less than the earlier ones: it is not recorded",
+                    writer.topic));
   }
 }
 
@@ -67,7 +67,7 @@ std::uint16_t Recorder::schema(const std::string& type) {
   const auto definition = introspection::ros_msg_definition(type);
   if (!definition) {
     say_once(fmt::format(
-        "no definition of {} is known here: its messages are recorded, but other tools cannot "
+        "the definition of {} is not known: its messages are recorded, but other tools cannot "
         "decode them",
         type));
   }

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "goshawk/recording_tools/record.hpp"
 #include "goshawk/recording/writer.hpp"
+#include "goshawk/recording_tools/record.hpp"
 #include "goshawk/runtime/node.hpp"
 
 namespace goshawk::recording {

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "goshawk/introspection/session.hpp"
+#include "goshawk/recording_tools/layout.hpp"
 #include "player.hpp"
 #include "qos_profiles.hpp"
 
@@ -45,8 +46,7 @@ bool in_lock_step(const ReplayOptions& o) {
   return !o.lock_step.empty() || !o.plant.empty();
 }
 
-/// Whether a channel is played: in lock step with the turns of the nodes that were named, and not
-/// with those of others.
+/// Whether a channel is played; in lock step also the turns of the named nodes, but of no others.
 bool wanted(const ReplayOptions& o, const std::string& topic, const std::string& type) {
   if (!o.plant.empty() && topic == kClock) return true;
   if (in_lock_step(o) && type == kTurnType) {
@@ -81,7 +81,7 @@ Status check_turns(const Reader& reader, const ReplayOptions& o) {
 Status check_offset(const Reader& reader, const ReplayOptions& o) {
   if (o.start_offset_s <= duration_s(reader)) return success();
   return fail(ErrorCode::invalid_parameter,
-              fmt::format("--start-offset lies behind the end: the recording is {:.3f} s long",
+              fmt::format("--start-offset is beyond the end: the recording is {:.3f} s long",
                           duration_s(reader)));
 }
 
@@ -114,14 +114,17 @@ Result<std::set<std::uint16_t>> choose_channels(const Reader& reader, const Repl
     if (!wanted(*o, channel.topic, type_of(reader, channel))) continue;
     if (channel.message_encoding != "cdr" || type_of(reader, channel)[0] == '\0' ||
         !runtime::check_topic_name(channel.topic)) {
-      say(channel.topic + " is left out: it is not a topic of ROS 2, whose messages are CDR");
+      say(channel.topic + " is skipped: it is not a ROS 2 topic with CDR messages");
       continue;
     }
     chosen.insert(id);
   }
+  if (auto same = check_layout(reader, chosen); !same) {
+    return fail(same.code(), fmt::format("{}: {}", o->file, same.error().message));
+  }
   if (!chosen.empty()) return chosen;
   return fail(ErrorCode::invalid_input,
-              fmt::format("nothing of {} is to be played: it has {}", o->file,
+              fmt::format("no topic of {} is chosen: it has {}", o->file,
                           here.empty() ? "no topics" : fmt::format("{}", fmt::join(here, ", "))));
 }
 

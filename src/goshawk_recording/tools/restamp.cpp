@@ -31,7 +31,7 @@ class Shifter {
     return std::ranges::all_of(type.fields, [this](const Field& f) { return walk(f); });
   }
 
-  /// Only as far as stamps go: what is behind may be megabytes.
+  /// Stops after the last stamp: megabytes may follow.
   bool walk_to_last_stamp(const Type& type) {
     std::size_t last = 0;
     for (std::size_t k = 0; k < type.fields.size(); ++k) {
@@ -112,7 +112,8 @@ Status shift_stamps(const Type& type, Bytes& message, std::int64_t shift_ns) {
     Shifter shifter(std::span<unsigned char>(message).subspan(kEncapsulation), swap, shift_ns);
     if (shifter.walk_to_last_stamp(type)) return success();
   }
-  return fail(ErrorCode::invalid_input, "a recorded message is no " + std::string(type.name) +
+  return fail(ErrorCode::invalid_input, "a recorded message is not a valid " +
+                                            std::string(type.name) +
                                             ": its stamps cannot be moved");
 }
 

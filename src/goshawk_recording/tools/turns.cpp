@@ -14,7 +14,7 @@ using goshawk_msgs::msg::Turn;
 using introspection::Interruptible;
 using Clock = std::chrono::steady_clock;
 
-constexpr double kAskAgain_s = 0.5;  // a node that is asked twice does its turn once
+constexpr double kAskAgain_s = 0.5;  // a node that is asked twice runs its turn once
 constexpr int kAsksUntilWord = 10;
 
 }  // namespace
@@ -36,10 +36,10 @@ Status TurnGiver::give_plant(const runtime::RawPublisher& turns, const Bytes* cl
                              const std::string& plant) {
   rosgraph_msgs::msg::Clock next;
   if (clock != nullptr && !runtime::decode(*clock, next)) {
-    return fail(ErrorCode::invalid_input, "a recorded message on /clock is no Clock");
+    return fail(ErrorCode::invalid_input, "a recorded message on /clock is not a valid Clock");
   }
   Turn turn;
-  // Before the first step the plant's time stands where simulated time begins.
+  // Before the first step, the plant's time is the start of simulated time.
   turn.clock(conversions::to_stamp(step_ns_ > 0 ? step_ns_ : runtime::kFirst_ns));
   turn.number(++plant_turn_);
   auto bytes = runtime::encode(turn);
@@ -51,11 +51,12 @@ Status TurnGiver::give(const runtime::RawPublisher& turns, Bytes& turn,
                        const std::string& follower) {
   Turn m;
   if (!runtime::decode(turn, m)) {
-    return fail(ErrorCode::invalid_input, "a recorded turn of " + follower + " is no Turn");
+    return fail(ErrorCode::invalid_input,
+                "a recorded turn of " + follower + " is not a valid Turn");
   }
   number_ = 0;
   for (int asked = 0; !Interruptible::interrupted(); ++asked) {
-    if (asked == kAsksUntilWord) say_(follower + " does not answer: replay waits for it");
+    if (asked == kAsksUntilWord) say_(follower + " does not answer: the replay waits for it");
     if (auto status = turns.publish_raw(&turn); !status) return status;
     const auto until = Clock::now() + std::chrono::duration<double>(kAskAgain_s);
     for (double left_s = kAskAgain_s; left_s > 0.0 && !Interruptible::interrupted();

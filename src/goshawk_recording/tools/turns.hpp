@@ -16,20 +16,20 @@ inline constexpr const char* kClock = "/clock";
 /// The node whose turns a topic carries ("/tracker" of "/tracker/turn"), or "" for other topics.
 std::string turn_of(const std::string& topic, const std::string& type);
 
-/// Gives recorded turns again, as the plant gave them (docs/adr/0006-lock-step.md): the next
+/// Gives recorded turns as the plant gave them (docs/adr/0006-lock-step.md): the next
 /// message is not published before the node has answered.
 class TurnGiver {
  public:
   TurnGiver(runtime::Node& node, Say say);
 
-  /// A turn of a node that led the recorded flight, and had none: what came in a step of /clock is
-  /// done at the end of that step.
+  /// A turn for the node that led the recorded flight and had no turns itself: it serves the
+  /// messages of a step of /clock at the end of that step.
   /// @param clock bytes of the Clock that begins the next step; nullptr: the last one has ended
   Status give_plant(const runtime::RawPublisher& turns, const Bytes* clock,
                     const std::string& plant);
 
   /// @param turn bytes of a Turn. @param follower full name of its node
-  /// @return invalid_input where the bytes are no turn; success also if Ctrl-C came first
+  /// @return invalid_input if the bytes are not a turn; success also if Ctrl-C came first
   Status give(const runtime::RawPublisher& turns, Bytes& turn, const std::string& follower);
 
  private:

@@ -47,7 +47,7 @@ Result<std::vector<Wanted>> wanted_components(const std::vector<std::string>& ar
   for (const auto& argument : arguments) {
     if (argument.starts_with("-")) {
       return fail(ErrorCode::invalid_input,
-                  fmt::format("'{}' is not a component; options stand behind --ros-args", argument));
+                  fmt::format("'{}' is not a component; options follow --ros-args", argument));
     }
     const auto colon = argument.find(':');
     const std::string component = argument.substr(0, colon);
@@ -76,7 +76,7 @@ Status check_nodes(const std::vector<Wanted>& wanted) {
     if (auto status = check_topic_name(w.node); !status) return status;
     if (!names.insert(w.node).second) {
       return fail(ErrorCode::invalid_input,
-                  "there would be two nodes named " + w.node + ": write COMPONENT:NODE_NAME");
+                  "two nodes would be named " + w.node + ": write COMPONENT:NODE_NAME");
     }
   }
   return success();
@@ -88,7 +88,7 @@ struct Running {
   std::thread thread;
 };
 
-// Every component is tried, so that the faults of all of them are said at once.
+// Tries every component, to report all faults together.
 Result<std::vector<const ComponentExport*>> load(const std::vector<Wanted>& wanted) {
   std::vector<const ComponentExport*> exports;
   std::optional<Error> fault;

@@ -48,7 +48,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace goshawk_msgs::msg;
   if (size == 0) return 0;
   decode_one<VoxelGrid, VoxelGridUpdate, PlanRequest, goshawk_msgs::msg::Path, Corridor,
-             BezierTrajectory, CommittedTrajectory, ThrustAttitude, StageReport, NavigatorState,
+             BezierTrajectory, CommittedTrajectory, AttitudeSetpoint, StageReport, NavigatorState,
              TrackingState, VehicleStatus, Turn, ParameterRequest, ParameterAnswer,
              std_msgs::msg::String, geometry_msgs::msg::PoseStamped, nav_msgs::msg::Path,
              nav_msgs::msg::Odometry, sensor_msgs::msg::PointCloud2,

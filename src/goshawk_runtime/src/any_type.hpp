@@ -11,7 +11,7 @@ namespace goshawk::runtime {
 struct Sample {
   eprosima::fastdds::dds::TopicDataType* type = nullptr;
   void* object = nullptr;
-  bool decoded = false;  // written by deserialize(), and where it is false:
+  bool decoded = false;  // written by deserialize(); if false:
   std::string fault{};   // why, if more is known than that it is another type's
 };
 

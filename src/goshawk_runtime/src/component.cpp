@@ -11,8 +11,8 @@ namespace {
 constexpr std::string_view kPrefix = "libgoshawk_";
 constexpr std::string_view kSuffix = "_component.so";
 
-// Folders that may hold components: that of this library, and what GOSHAWK_COMPONENT_PATH and
-// LD_LIBRARY_PATH name.
+// Folders that may have components: this library's own, then those of GOSHAWK_COMPONENT_PATH and
+// LD_LIBRARY_PATH.
 std::vector<std::filesystem::path> component_folders() {
   std::vector<std::filesystem::path> folders;
   Dl_info self{};
@@ -63,9 +63,9 @@ Result<const ComponentExport*> load_component(const std::string& name) {
     }
     const void* symbol = dlsym(library, "goshawk_component");
     if (symbol == nullptr) {
-      return fail(ErrorCode::io_failed, (folder / file).string() +
-                                            " is no component: it lacks "
-                                            "GOSHAWK_REGISTER_COMPONENT");
+      return fail(
+          ErrorCode::io_failed,
+          (folder / file).string() + " is not a component: it lacks GOSHAWK_REGISTER_COMPONENT");
     }
     return static_cast<const ComponentExport*>(symbol);
   }
@@ -73,7 +73,7 @@ Result<const ComponentExport*> load_component(const std::string& name) {
   const std::string near = nearest_name(name, known);
   return fail(ErrorCode::invalid_parameter,
               "there is no component '" + name + "'" +
-                  (near.empty() ? "" : "; did you mean " + near + "?") +
+                  (near.empty() ? "." : "; did you mean " + near + "?") +
                   " Installed: " + joined(known));
 }
 

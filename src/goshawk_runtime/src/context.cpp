@@ -7,6 +7,7 @@
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
+#include <fmt/format.h>
 #include <algorithm>
 #include <charconv>
 #include <cstdlib>
@@ -56,10 +57,9 @@ Status check_interfaces(const std::string& interfaces) {
   std::string known;
   for (const auto& address : here) known += (known.empty() ? "" : ", ") + address;
   return fail(ErrorCode::invalid_parameter,
-              "interfaces '" + interfaces +
-                  "' are not 'loopback', 'all' or IPv4 addresses of this "
-                  "machine, which has " +
-                  known);
+              fmt::format("interfaces '{}' are not 'loopback', 'all' or IPv4 addresses of this "
+                          "machine, which has {}",
+                          interfaces, known));
 }
 
 void use_udp(dds::DomainParticipantQos& qos, const std::string& interfaces) {
@@ -126,7 +126,14 @@ dds::DomainParticipantQos participant_qos(const ContextOptions& options,
 
 Result<ContextOptions> ContextOptions::from_environment() {
   ContextOptions options;
-  if (const char* interfaces = std::getenv("GOSHAWK_INTERFACES")) options.interfaces = interfaces;
+  if (const char* interfaces = std::getenv("GOSHAWK_INTERFACES")) {
+    if (*interfaces == '\0') {
+      return fail(ErrorCode::invalid_parameter,
+                  "GOSHAWK_INTERFACES is set but empty: unset it for loopback, or set it to all or "
+                  "to IPv4 addresses of this machine");
+    }
+    options.interfaces = interfaces;
+  }
   if (const char* text = std::getenv("ROS_DOMAIN_ID"); text != nullptr && *text != '\0') {
     const std::string_view view(text);
     const auto [end, error] =
@@ -142,8 +149,8 @@ Result<ContextOptions> ContextOptions::from_environment() {
 
 Result<std::unique_ptr<Context>> Context::create(const ContextOptions& options) {
   if (options.domain < 0 || options.domain > kLastDomain) {
-    return fail(ErrorCode::invalid_parameter, "domain " + std::to_string(options.domain) +
-                                                  " does not exist: it must be from 0 to 232");
+    return fail(ErrorCode::invalid_parameter,
+                fmt::format("there is no domain {}: it must be from 0 to 232", options.domain));
   }
   if (auto status = check_interfaces(options.interfaces); !status) return status.error();
   auto impl = std::make_unique<Impl>();
@@ -153,11 +160,11 @@ Result<std::unique_ptr<Context>> Context::create(const ContextOptions& options) 
                                                   participant_qos(options, impl->refusals),
                                                   &impl->listener, dds::StatusMask::none());
   if (impl->participant == nullptr) {
-    return fail(ErrorCode::io_failed,
-                "cannot join domain " + std::to_string(options.domain) + " on interfaces '" +
-                    options.interfaces +
-                    "': are its UDP ports (7400 + 250 x domain and up) taken, "
-                    "is the interface up, is the profile file right?");
+    return fail(
+        ErrorCode::io_failed,
+        fmt::format("cannot join domain {} on interfaces '{}': are its UDP ports (7400 + 250 "
+                    "x domain and up) taken, is the interface up, is the profile file right?",
+                    options.domain, options.interfaces));
   }
   impl->publisher = impl->participant->create_publisher(dds::PUBLISHER_QOS_DEFAULT);
   impl->subscriber = impl->participant->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT);

@@ -16,7 +16,7 @@ namespace goshawk::runtime {
 namespace dds = eprosima::fastdds::dds;
 namespace rtps = eprosima::fastrtps::rtps;
 
-/// Keeps a picture of who is in the domain.
+/// Keeps a list of the domain's participants and endpoints.
 class DiscoveryListener : public dds::DomainParticipantListener {
  public:
   void on_participant_discovery(dds::DomainParticipant* participant,
@@ -44,7 +44,7 @@ struct Context::Impl {
   dds::Subscriber* subscriber = nullptr;
 
   ~Impl();
-  /// The topic object of that name, made at first use. @return nullptr where it exists with
+  /// The topic object of that name, made at first use. @return nullptr if it exists with
   /// another type
   dds::Topic* topic(const std::string& ros_name, const dds::TypeSupport& type);
 

@@ -15,7 +15,7 @@ class RawType : public eprosima::fastdds::dds::TopicDataType {
  public:
   explicit RawType(const std::string& wire_name) {
     setName(wire_name.c_str());
-    m_typeSize = 1024;  // where the history's buffers begin; they grow
+    m_typeSize = 1024;  // initial size of the history's buffers; they grow
     m_isGetKeyDefined = false;
   }
   bool serialize(void* data, Payload* payload) override {

@@ -19,7 +19,7 @@ using eprosima::fastrtps::types::ReturnCode_t;
 
 namespace {
 
-constexpr double kLongest_s = 1e6;  // beyond, a wait counts as for ever
+constexpr double kLongest_s = 1e6;  // longer waits count as for ever
 // A flood on one topic must not starve timers and the other topics of the node.
 constexpr int kMostAtOnce = 64;
 
@@ -96,9 +96,9 @@ void apply(const Qos& qos, EndpointQos& out) {
       qos.transient_local ? dds::TRANSIENT_LOCAL_DURABILITY_QOS : dds::VOLATILE_DURABILITY_QOS;
   out.history().kind = dds::KEEP_LAST_HISTORY_QOS;
   out.history().depth = qos.depth;
-  out.resource_limits().max_samples = 0;  // the depth alone limits
+  out.resource_limits().max_samples = 0;  // only the depth limits
   out.resource_limits().max_samples_per_instance = qos.depth;
-  // Buffers of the size that a message needs, reused: a latched map must not stay twice.
+  // Buffers as large as a message needs, reused: a latched map must not be stored twice.
   out.endpoint().history_memory_policy =
       rtps::MemoryManagementPolicy_t::DYNAMIC_REUSABLE_MEMORY_MODE;
 }
@@ -111,7 +111,7 @@ bool may_be_megabytes(std::string_view wire_name) {
 }  // namespace
 
 void Node::Impl::wait(double timeout_s) {
-  // Timers of simulated time become due by messages, not by waiting.
+  // Messages, not waiting, make timers of simulated time due.
   if (!time.on) {
     for (const auto& timer : timers) {
       timeout_s = std::min(timeout_s, double(timer.next_ns - timer_now_ns()) * 1e-9);
@@ -158,7 +158,7 @@ int Node::Impl::take_some(const Node& node, Subscription& s) {
     if (s.reader->take_next_sample(&sample, &info) != ReturnCode_t::RETCODE_OK) return i;
     if (!info.valid_data) continue;
     if (!sample.decoded) {
-      // The 1st, 2nd, 4th, 8th ...: a hostile sender must not fill the disk.
+      // Logs the 1st, 2nd, 4th, 8th ...: a hostile sender must not fill the disk.
       if (std::has_single_bit(++s.undecoded)) {
         node.log_->warn("a message on {} could not be decoded and was dropped ({} so far): {}",
                         s.topic, s.undecoded,
@@ -171,6 +171,21 @@ int Node::Impl::take_some(const Node& node, Subscription& s) {
     if (stopping) return i + 1;
   }
   return kMostAtOnce;
+}
+
+bool Node::Impl::serve(const Node& node) {
+  bool any = false;
+  more = false;
+  // By index: a callback may subscribe.
+  for (std::size_t i = 0; i < subscriptions.size() && !stopping; ++i) {
+    const int taken = take_some(node, *subscriptions[i]);
+    any = any || taken > 0;
+    more = more || taken == kMostAtOnce;
+  }
+  for (auto& callback : std::exchange(deferred, {})) {
+    if (!stopping) call(node, "deferred work", callback);
+  }
+  return any;
 }
 
 Node::Node(Context& context, std::string name, RosArgs args, std::shared_ptr<const Clock> clock)
@@ -205,7 +220,7 @@ std::shared_ptr<detail::Writer> Node::make_writer(std::string_view topic, const 
   auto* dds_topic = impl_->context.topic(name, type.impl().support);
   dds::DataWriterQos writer_qos;
   auto* publisher = impl_->context.publisher;
-  // A profile named like the topic retunes it without compiling; ours else.
+  // A profile named like the topic changes its quality of service without compiling.
   if (publisher->get_datawriter_qos_from_profile(name, writer_qos) != ReturnCode_t::RETCODE_OK) {
     writer_qos = dds::DATAWRITER_QOS_DEFAULT;
     apply(qos, writer_qos);
@@ -216,9 +231,10 @@ std::shared_ptr<detail::Writer> Node::make_writer(std::string_view topic, const 
   auto* writer =
       dds_topic == nullptr ? nullptr : publisher->create_datawriter(dds_topic, writer_qos);
   if (writer == nullptr) {
-    throw StartupFault(fail(ErrorCode::io_failed,
-                            name_ + " cannot write " + name + " as " + type.name() +
-                                ": another type uses this topic here, or its profile is wrong"));
+    throw StartupFault(
+        fail(ErrorCode::io_failed,
+             name_ + " cannot write " + name + " as " + type.name() +
+                 ": another type uses this topic in this process, or its profile is wrong"));
   }
   return std::make_shared<detail::Writer>(publisher, writer, type.impl().support, name);
 }
@@ -233,8 +249,9 @@ std::unique_ptr<Subscription> Node::Impl::open(const Node& node, const std::stri
       ReturnCode_t::RETCODE_OK) {
     reader_qos = dds::DATAREADER_QOS_DEFAULT;
     apply(qos, reader_qos);
-    // A process has one receiving thread for all else, and a setpoint must not wait there behind
-    // the hundreds of datagrams of a map. By turns all comes in order through one socket instead.
+    // A process has one receiving thread for all other topics, where a setpoint would wait behind
+    // the hundreds of datagrams of a map. In lock step everything comes in order through one
+    // socket.
     own_port = may_be_megabytes(type.name()) && !time.takes_turns &&
                std::getenv("FASTRTPS_DEFAULT_PROFILES_FILE") == nullptr;
   }
@@ -247,13 +264,14 @@ std::unique_ptr<Subscription> Node::Impl::open(const Node& node, const std::stri
     auto& properties = reader_qos.properties().properties();
     properties.emplace_back("fastdds.unique_network_flows", "true");
     reader = create();
-    if (reader == nullptr) properties.pop_back();  // all of its ports are taken
+    if (reader == nullptr) properties.pop_back();  // all ports are taken
   }
   if (reader == nullptr) reader = create();
   if (reader == nullptr) {
-    throw StartupFault(fail(ErrorCode::io_failed,
-                            node.name_ + " cannot read " + name + " as " + type.name() +
-                                ": another type uses this topic here, or its profile is wrong"));
+    throw StartupFault(
+        fail(ErrorCode::io_failed,
+             node.name_ + " cannot read " + name + " as " + type.name() +
+                 ": another type uses this topic in this process, or its profile is wrong"));
   }
   auto subscription = std::make_unique<Subscription>();
   subscription->reader = reader;
@@ -277,14 +295,18 @@ void Node::every(double period_s, std::function<void()> callback) {
   if (!(period_s > 0.0) || !std::isfinite(period_s)) {
     throw std::invalid_argument("Node::every: a period must be above 0 s");
   }
-  // Not below 1 ns: a period of zero ticks would never let go of the loop.
+  // At least 1 ns: a period of zero would never leave the loop.
   const auto period_ns =
       std::max(std::int64_t{1}, std::chrono::nanoseconds(to_steady(period_s)).count());
   impl_->timers.push_back({period_ns, impl_->timer_now_ns() + period_ns, std::move(callback)});
 }
 
+void Node::later(std::function<void()> callback) {
+  impl_->deferred.push_back(std::move(callback));
+}
+
 void Node::serve(std::unique_ptr<LiveParameters> parameters) {
-  // Asked for twice, as a component may: the newest counts.
+  // A component may read its parameters twice: the newest ones count.
   if (impl_->parameters != nullptr) return impl_->parameters->replace(std::move(parameters));
   impl_->parameters = std::make_unique<ParameterService>(*this, std::move(parameters));
 }
@@ -298,12 +320,8 @@ void Node::spin_some(double timeout_s) {
   if (!impl_->time.followers.empty()) return impl_->lead(*this);
   impl_->wait(clamped(timeout_s));
   if (impl_->stopping) return;
-  impl_->more = false;
   impl_->run_due_timers(*this);
-  // By index: a callback may subscribe.
-  for (std::size_t i = 0; i < impl_->subscriptions.size() && !impl_->stopping; ++i) {
-    if (impl_->take_some(*this, *impl_->subscriptions[i]) == kMostAtOnce) impl_->more = true;
-  }
+  impl_->serve(*this);
 }
 
 void Node::stop() {

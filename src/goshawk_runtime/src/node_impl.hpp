@@ -24,7 +24,7 @@ struct Subscription {
   dds::DataReader* reader = nullptr;
   std::string topic;
   dds::TypeSupport type;
-  void* object = nullptr;  // one, used again for every message
+  void* object = nullptr;  // reused for every message
   Node::RawCallback callback;
   std::uint64_t undecoded = 0;
 };
@@ -35,7 +35,7 @@ struct Timer {
   std::function<void()> callback;
 };
 
-/// How a node lives with simulated time (docs/adr/0006-lock-step.md).
+/// A node's part in simulated time (docs/adr/0006-lock-step.md).
 struct SimulatedTime {
   bool on = false;
   std::int64_t now_ns = 0;  // 0: none yet
@@ -55,7 +55,7 @@ struct SimulatedTime {
   double speed = 0.0;
   bool begun = false;
   std::uint64_t turn = 0;
-  std::pair<std::string, std::uint64_t> answered;  // who, and which turn
+  std::pair<std::string, std::uint64_t> answered;  // node and turn
   Steady::time_point next_step;
 };
 
@@ -81,11 +81,12 @@ struct Node::Impl {
   dds::GuardCondition stop;
   std::atomic<bool> stopping = false;
   dds::WaitSet wait_set;
-  dds::WaitSet turn_wait_set;  // of turns and their answers alone: all else waits meanwhile
+  dds::WaitSet turn_wait_set;  // only for turns and their answers
   dds::ConditionSeq active;
   std::vector<std::unique_ptr<Subscription>> subscriptions;
   std::deque<Timer> timers;  // a callback may add one: elements stay where they are
   bool more = false;         // the last pass left messages behind
+  std::vector<std::function<void()>> deferred;  // for the end of the pass
   SimulatedTime time;
   std::unique_ptr<ParameterService> parameters;
 
@@ -95,7 +96,7 @@ struct Node::Impl {
     context.subscriber->delete_datareader(subscription.reader);
     subscription.type.delete_data(subscription.object);
   }
-  /// [ns] what timers go by
+  /// [ns] clock of the timers
   std::int64_t timer_now_ns() const {
     return time.on ? time.now_ns
                    : std::chrono::nanoseconds(Steady::now().time_since_epoch()).count();
@@ -105,15 +106,18 @@ struct Node::Impl {
   /// @return whether a turn, or an answer to one, came within timeout_s
   bool wait_for_turn(Subscription& subscription, double timeout_s);
   void run_due_timers(const Node& node);
-  /// @return messages taken, at most so many that a flood starves nobody
+  /// @return messages taken; limited, so that a flood on one topic does not starve the others
   int take_some(const Node& node, Subscription& subscription);
+  /// One pass: some messages of every subscription, then what was deferred.
+  /// @return whether there were any
+  bool serve(const Node& node);
   /// Takes until nothing is left.
   void drain(const Node& node);
   void follow(const Node& node, double timeout_s);
   void lead(const Node& node);
   bool give_turn(const Node& node, std::size_t follower);
   void call_the_roll(const Node& node);
-  /// An exception is a bug of the component: said, then left to end the process.
+  /// An exception is a bug of the component: logged, then left to end the process.
   template <typename Callback, typename... Arguments>
   void call(const Node& node, const std::string& what, const Callback& callback,
             const Arguments&... arguments);

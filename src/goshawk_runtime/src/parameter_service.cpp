@@ -10,8 +10,9 @@ namespace goshawk::runtime {
 namespace {
 
 using goshawk_msgs::msg::Parameter;
+namespace verb = goshawk_msgs::msg::ParameterRequest_Constants;
 
-constexpr std::size_t kMostGiven = 16;  // answers kept: no more clients than that ask at once
+constexpr std::size_t kMostGiven = 16;         // answers kept for clients that ask again
 constexpr std::size_t kMostParameters = 1000;  // in one request
 constexpr std::size_t kLongestName = 256;      // [byte] of clients and parameters
 constexpr std::size_t kLongestValue = 4096;    // [byte]
@@ -21,31 +22,33 @@ Error malformed(const std::string& why) {
   return fail(ErrorCode::invalid_input, "the request " + why);
 }
 
-// What ends up in logs must not look like another line of them.
+// Text that is logged must not look like another line of the log.
 bool has_control_characters(const std::string& text) {
   return std::ranges::any_of(text, [](unsigned char c) { return c < 0x20 || c == 0x7f; });
 }
 
-// The form alone; what it asks for is another matter.
+// Checks the form only.
 Status check(const goshawk_msgs::msg::ParameterRequest& request) {
   if (request.id() == 0) return malformed("has id 0: count from 1");
   if (request.client().empty() || has_control_characters(request.client())) {
-    return malformed("names no client: say who asks");
+    return malformed("names no client");
   }
-  if (request.verb() != "get" && request.verb() != "set") {
-    return malformed("has a verb that is neither get nor set");
+  if (request.verb() != verb::VERB_GET && request.verb() != verb::VERB_SET) {
+    return malformed("has a verb that is neither VERB_GET nor VERB_SET");
   }
   const auto& list = request.parameters();
   if (list.size() > kMostParameters) return malformed("names too many parameters at once");
-  if (request.verb() == "set" && list.empty()) return malformed("sets nothing: name a parameter");
+  if (request.verb() == verb::VERB_SET && list.empty())
+    return malformed("sets nothing: name a parameter");
   for (const Parameter& p : list) {
     if (p.name().empty()) return malformed("holds a parameter without a name");
     if (has_control_characters(p.name() + p.value())) {
       return malformed("holds a control character");
     }
-    if (p.name().size() > kLongestName) return malformed("holds a name of endless length");
+    if (p.name().size() > kLongestName)
+      return malformed("has a parameter name longer than 256 bytes");
     if (p.value().size() > kLongestValue) {
-      return malformed("holds a value of endless length for " + p.name());
+      return malformed("has a value longer than 4096 bytes for " + p.name());
     }
   }
   return success();
@@ -81,7 +84,7 @@ void ParameterService::on_request(const Request& request) {
   a.id(request.id());
   a.client(request.client());
   a.node(node_.full_name());
-  a.verb(request.verb().substr(0, kLongestName));
+  a.verb(request.verb());
   if (const auto listed = answer(request)) {
     a.code(std::string(to_string(ErrorCode::ok)));
     a.parameters(*listed);
@@ -91,14 +94,14 @@ void ParameterService::on_request(const Request& request) {
   }
   a.header().stamp(conversions::to_stamp(node_.now_ns()));
   publish(a);
-  if (request.id() == 0) return;  // none that could be told from another
+  if (request.id() == 0) return;  // cannot be told from another
   given_.push_back(std::move(a));
   if (given_.size() > kMostGiven) given_.pop_front();
 }
 
 Result<ParameterService::Listed> ParameterService::answer(const Request& request) {
   if (auto status = check(request); !status) return status.error();
-  return request.verb() == "get" ? get(request) : set(request);
+  return request.verb() == verb::VERB_GET ? get(request) : set(request);
 }
 
 Result<ParameterService::Listed> ParameterService::get(const Request& request) const {
@@ -127,7 +130,7 @@ Result<ParameterService::Listed> ParameterService::set(const Request& request) {
   ParameterSource wanted;
   for (const Parameter& p : request.parameters()) {
     auto entry = ParameterSource::written(p.value(), "asked by " + request.client());
-    if (wanted.entries().contains(p.name())) entry.fault = "stands there twice: remove one of them";
+    if (wanted.entries().contains(p.name())) entry.fault = "is specified twice: remove one of them";
     wanted.set(p.name(), std::move(entry));
   }
   const auto changes = parameters_->set(wanted);

@@ -31,7 +31,7 @@ class ParameterService {
   Node& node_;
   std::unique_ptr<LiveParameters> parameters_;
   Publisher<Answer> answers_;
-  std::deque<Answer> given_;  // the newest: a client that heard nothing asks again
+  std::deque<Answer> given_;  // the newest ones, for clients that ask again
 };
 
 }  // namespace goshawk::runtime

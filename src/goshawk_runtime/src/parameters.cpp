@@ -1,5 +1,6 @@
 #include "goshawk/runtime/parameters.hpp"
 
+#include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
@@ -26,13 +27,17 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
+std::string did_you_mean(const std::string& near) {
+  return near.empty() ? "" : fmt::format("; did you mean {}?", near);
+}
+
 // yaml-cpp marks quoted scalars with the tag "!".
 Status add_section(const YAML::Node& section, const std::string& where, ParameterSource& source) {
   const YAML::Node parameters = section.IsMap() ? section["ros__parameters"] : YAML::Node();
   if (!parameters || !(parameters.IsMap() || parameters.IsNull())) {
     return fail(ErrorCode::invalid_parameter,
                 where +
-                    " holds no map ros__parameters: write\n  NODE:\n    ros__parameters:\n"
+                    " has no map ros__parameters: write\n  NODE:\n    ros__parameters:\n"
                     "      NAME: VALUE");
   }
   std::set<std::string> seen;
@@ -42,9 +47,9 @@ Status add_section(const YAML::Node& section, const std::string& where, Paramete
     if (pair.second.IsScalar()) {
       entry.text = pair.second.Scalar();
     } else {
-      entry.fault = "is not a single value: empty entries, lists and maps have no meaning here";
+      entry.fault = "is not a single value: empty entries, lists and maps are not allowed here";
     }
-    if (!seen.insert(name).second) entry.fault = "stands there twice: remove one of them";
+    if (!seen.insert(name).second) entry.fault = "is specified twice: remove one of them";
     source.set(name, std::move(entry));
   }
   return success();
@@ -98,8 +103,7 @@ Status check_sections(const std::string& params_file, const std::vector<std::str
       const std::string node = name.substr(name.rfind('/') + 1);
       if (name == "/**" || std::ranges::find(known, node) != known.end()) continue;
       const std::string near = nearest_name(node, known);
-      faults +=
-          "\n  " + name + ": no such node" + (near.empty() ? "" : "; did you mean " + near + "?");
+      faults += fmt::format("\n  {}: no such node{}", name, did_you_mean(near));
     }
   } catch (const YAML::BadFile&) {
     return fail(ErrorCode::io_failed, params_file + " cannot be read: does it exist?");
@@ -107,14 +111,15 @@ Status check_sections(const std::string& params_file, const std::vector<std::str
     return fail(ErrorCode::invalid_parameter, params_file + " is not valid YAML: " + e.what());
   }
   if (faults.empty()) return success();
-  return fail(ErrorCode::invalid_parameter, params_file + " has sections for nobody:" + faults);
+  return fail(ErrorCode::invalid_parameter,
+              params_file + " has sections for nodes that do not exist:" + faults);
 }
 
 std::string nearest_name(std::string_view wrong, const std::vector<std::string>& known) {
   std::string best;
   std::size_t least = std::max<std::size_t>(3, wrong.size() / 2 + 1);
   for (const auto& name : known) {
-    // A unit that was left out, as in v_max for v_max_m_s, is the nearest of all.
+    // A name without its unit, as v_max for v_max_m_s, is the nearest of all.
     const bool begins = wrong.size() >= 3 && name.starts_with(wrong) && name[wrong.size()] == '_';
     const std::size_t distance = begins ? 1 : edit_distance(wrong, name);
     if (distance < least) {
@@ -139,7 +144,7 @@ template <typename Number>
 std::string parse_number(const ParameterSource::Entry& entry, Number& value, const char* what) {
   const char* first = entry.text.data();
   const char* last = first + entry.text.size();
-  // "+5" is a number, but from_chars knows no plus; "+-5" is none.
+  // from_chars takes no plus sign: "+5" is a number, "+-5" is not.
   if (last - first > 1 && *first == '+' && first[1] != '-') ++first;
   const auto [end, error] = std::from_chars(first, last, value);
   if (entry.quoted || error != std::errc{} || end != last) return std::string("is not ") + what;
@@ -171,8 +176,7 @@ std::string range_fault(const std::string& value, const OneOf& one_of) {
 
 std::string not_a_choice(const std::string& word, const std::vector<std::string>& choices) {
   const std::string near = nearest_name(word, choices);
-  return "is not a choice: it must be " + range_text(OneOf{choices}) +
-         (near.empty() ? "" : "; did you mean " + near + "?");
+  return "is not a choice: it must be " + range_text(OneOf{choices}) + did_you_mean(near);
 }
 
 std::string to_text(bool value) {
@@ -182,9 +186,7 @@ std::string to_text(int value) {
   return std::to_string(value);
 }
 std::string to_text(double value) {
-  char text[32];
-  const auto [end, error] = std::to_chars(text, text + sizeof text, value);
-  return {text, end};
+  return fmt::format("{}", value);
 }
 std::string to_text(const std::string& value) {
   return value;
@@ -208,7 +210,7 @@ std::string range_text(const OneOf& one_of) {
 
 void Reader::add_fault(const std::string& name, const ParameterSource::Entry& entry,
                        const std::string& fault) {
-  faults_.push_back(name + ": '" + entry.text + "' " + fault + " (" + entry.origin + ")");
+  faults_.push_back(fmt::format("{}: '{}' {} ({})", name, entry.text, fault, entry.origin));
 }
 
 std::string Reader::change_fault(const std::string& name, const ParameterSource::Entry& entry,
@@ -222,13 +224,12 @@ Status Reader::finish(std::string_view node_name) {
   for (const auto& [name, entry] : source_.entries()) {
     if (std::ranges::find(known_, name) != known_.end()) continue;
     const std::string near = nearest_name(name, known_);
-    faults_.push_back(name + ": no such parameter of " + std::string(node_name) +
-                      (near.empty() ? "" : "; did you mean " + near + "?") + " (" + entry.origin +
-                      ")");
+    faults_.push_back(fmt::format("{}: no such parameter of {}{} ({})", name, node_name,
+                                  did_you_mean(near), entry.origin));
   }
   if (faults_.empty()) return success();
-  std::string text = std::string(node_name) + " has " + std::to_string(faults_.size()) +
-                     (faults_.size() == 1 ? " parameter fault:" : " parameter faults:");
+  std::string text = fmt::format("{} has {} parameter fault{}:", node_name, faults_.size(),
+                                 faults_.size() == 1 ? "" : "s");
   for (const auto& fault : faults_) text += "\n  " + fault;
   return fail(ErrorCode::invalid_parameter, text);
 }

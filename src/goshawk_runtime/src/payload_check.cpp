@@ -1,5 +1,7 @@
 #include "payload_check.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <bit>
 #include <cstdint>
@@ -21,15 +23,14 @@ using schema::Type;
 
 constexpr std::size_t kEncapsulation = 4;  // [byte] in front; alignment counts from behind it
 constexpr std::size_t kString = sizeof(std::string), kVector = sizeof(std::vector<char>);
-constexpr std::size_t kInPlace =
-    15;  // characters that a std::string holds without memory elsewhere
+constexpr std::size_t kInPlace = 15;  // characters that a std::string stores in itself
 
 /// [byte]
 struct Size {
   std::size_t memory = 0;   // of the C++ object, without what it points at
   std::size_t largest = 1;  // alignment, which is that of its largest primitive in CDR as well
   std::size_t first = 1;    // alignment of its first primitive
-  std::size_t wire = 0;     // where it is the same wherever it stands, padding included; else 0
+  std::size_t wire = 0;     // if it is the same at every offset, padding included; else 0
 };
 
 std::size_t aligned(std::size_t at, std::size_t to) {
@@ -112,31 +113,31 @@ class Walk {
     return true;
   }
 
-  /// The length of a sequence: as many elements must be there, and have room.
+  /// Reads the length of a sequence. That many elements must follow and fit into memory.
   bool claim(const Field& field, std::uint32_t& count) {
     if (!number(count)) return false;
     const bool structure = field.kind == Kind::structure;
     const std::size_t least =
         structure ? schema::types()[std::size_t(field.type)].least_size : size_of(field.kind);
     if (count > left() / least) {
-      fault_ = "claims " + std::to_string(count) + " elements of " + std::to_string(least) +
-               " bytes or more, but the " + std::to_string(left()) + " bytes left allow " +
-               std::to_string(left() / least);
+      fault_ = fmt::format("claims {} elements of {} bytes or more, but the {} bytes left allow {}",
+                           count, least, left(), left() / least);
       return false;
     }
     const std::size_t each = structure                    ? sizes()[std::size_t(field.type)].memory
                              : field.kind == Kind::string ? kString
                                                           : least;
-    return take(count * each, std::to_string(count) + " elements");
+    return take(count * each, fmt::format("{} elements", count));
   }
 
-  /// Of all the memory that the decoded message may take.
+  /// Counts memory that the decoded message will take.
   bool take(std::size_t memory, const std::string& what) {
     memory_ += memory;
     if (memory_ <= most_memory_) return true;
-    fault_ = "claims " + what + ", which makes " + std::to_string(memory_) +
-             " bytes in memory of a message of " + std::to_string(bytes_.size()) + ": " +
-             std::to_string(most_memory_) + " are allowed";
+    fault_ = fmt::format(
+        "claims {}, which would take {} bytes of memory for a message of {}: {} are "
+        "allowed",
+        what, memory_, bytes_.size(), most_memory_);
     return false;
   }
 
@@ -145,8 +146,7 @@ class Walk {
     std::uint32_t length = 0;
     if (!number(length)) return false;
     if (length > left()) {
-      fault_ = "claims " + std::to_string(length) + " characters, but the " +
-               std::to_string(left()) + " bytes left allow no more";
+      fault_ = fmt::format("claims {} characters, but only {} bytes are left", length, left());
       return false;
     }
     at_ += length;
@@ -170,7 +170,7 @@ class Walk {
   }
 
   bool cut_off() {
-    fault_ = "is cut off: the message ends after " + std::to_string(bytes_.size()) + " bytes";
+    fault_ = fmt::format("is cut off: the message ends after {} bytes", bytes_.size());
     return false;
   }
 
@@ -189,7 +189,7 @@ PayloadCheck::PayloadCheck(std::string_view wire_name) {
   const auto types = schema::types();
   const auto found = std::ranges::find_if(
       types, [&](const Type& type) { return wire_type_name(type.name) == wire_name; });
-  if (found == types.end()) throw std::logic_error("no type of idl/: " + std::string(wire_name));
+  if (found == types.end()) throw std::logic_error("not a type of idl/: " + std::string(wire_name));
   type_ = &*found;
 }
 

@@ -1,5 +1,7 @@
 #include "goshawk/runtime/ros_args.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <utility>
@@ -11,7 +13,7 @@ Result<std::pair<std::string, std::string>> split(const std::string& text, const
   const auto at = text.find(":=");
   if (at == std::string::npos || at == 0 || at + 2 == text.size()) {
     return fail(ErrorCode::invalid_input,
-                std::string(what) + " '" + text + "' is not of the form name:=value");
+                fmt::format("{} '{}' is not of the form name:=value", what, text));
   }
   return std::pair{text.substr(0, at), text.substr(at + 2)};
 }
@@ -28,7 +30,7 @@ Status add_remap(RosArgs& args, const std::string& text) {
     args.node_name = to;
     if (to.find('/') == std::string::npos) return check_topic_name(to);
     return fail(ErrorCode::invalid_input,
-                "node name '" + to + "' holds a '/': set the namespace with -r __ns:=");
+                fmt::format("node name '{}' contains a '/': set the namespace with -r __ns:=", to));
   }
   const auto colon = from.find(':');
   RosArgs::Remap remap{from, to};
@@ -73,16 +75,16 @@ Status take_option(RosArgs& args, const std::string& option, const std::string& 
     args.log_level = value;
     return success();
   }
-  return fail(
-      ErrorCode::invalid_input,
-      "'" + option + "' is no option of --ros-args: use -r, -p, --params-file, --log-level");
+  return fail(ErrorCode::invalid_input,
+              fmt::format("--ros-args has no option '{}': use -r, -p, --params-file or --log-level",
+                          option));
 }
 
 }  // namespace
 
 Result<RosArgs> RosArgs::extract(std::vector<std::string>& arguments) {
   RosArgs args;
-  // ROS allows several parts, each up to its "--".
+  // ROS allows several such parts; each ends at "--".
   for (;;) {
     const auto begin = std::ranges::find(arguments, "--ros-args");
     if (begin == arguments.end()) return args;
@@ -90,7 +92,7 @@ Result<RosArgs> RosArgs::extract(std::vector<std::string>& arguments) {
     for (; it != arguments.end() && *it != "--" && *it != "--ros-args"; ++it) {
       const std::string option = *it;
       if (++it == arguments.end()) {
-        return fail(ErrorCode::invalid_input, "'" + option + "' wants a value behind it");
+        return fail(ErrorCode::invalid_input, fmt::format("'{}' needs a value", option));
       }
       if (auto status = take_option(args, option, *it); !status) return status.error();
     }
@@ -131,9 +133,10 @@ Status check_topic_name(std::string_view topic) {
       (topic == "/" || !topic.ends_with('/'))) {
     return success();
   }
-  return fail(ErrorCode::invalid_input, "'" + std::string(topic) +
-                                            "' is not a name: use letters, digits and '_', parts "
-                                            "parted by single '/'");
+  return fail(ErrorCode::invalid_input,
+              fmt::format("'{}' is not a valid name: use letters, digits and '_', with single '/' "
+                          "between parts",
+                          topic));
 }
 
 }  // namespace goshawk::runtime

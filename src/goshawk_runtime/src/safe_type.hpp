@@ -9,26 +9,25 @@
 
 namespace goshawk::runtime {
 
-/// What can say why it does not decode a payload.
+/// Can explain why it does not decode a payload.
 class Explains {
  public:
   virtual ~Explains() = default;
   virtual std::string fault_of(const eprosima::fastrtps::rtps::SerializedPayload_t& p) const = 0;
 };
 
-/// A generated PubSubType made safe (docs/adr/0002): what the generated code throws while it
-/// decodes (a bool byte of 7, a sequence longer than the payload, no memory) would end the process;
-/// here it is a sample that did not decode, and what claims more than it brings is not decoded at
-/// all. Loans are off, because the generated is_plain is
-/// wrong for types with padding, and there are no keys.
+/// A generated PubSubType made safe (docs/adr/0002). Generated code throws while it decodes a bool
+/// byte of 7, a sequence longer than the payload or without memory, which would end the process:
+/// here such a sample is not decoded. A payload that claims more than it brings is not even tried.
+/// Loans are off because the generated is_plain is wrong for types with padding. There are no keys.
 template <typename PubSubType>
 class SafeType : public PubSubType, public Explains {
  public:
   using Payload = eprosima::fastrtps::rtps::SerializedPayload_t;
 
   bool serialize(void* data, Payload* payload) override {
-    // Padding is left as it was: bytes of other messages would go out, and the same message would
-    // not have the same bytes twice.
+    // The generated code skips padding: without this, bytes of other messages would be sent, and
+    // the same message would not have the same bytes twice.
     std::memset(payload->data, 0, payload->max_size);
     try {
       return PubSubType::serialize(data, payload);

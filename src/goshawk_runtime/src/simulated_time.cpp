@@ -16,7 +16,7 @@ namespace {
 using goshawk_msgs::msg::Turn;
 
 constexpr const char* kDone = "/turn_done";
-constexpr double kAskAgain_s = 0.5;  // a follower that died comes back under the same name
+constexpr double kAskAgain_s = 0.5;  // a follower that died may come back under the same name
 constexpr double kSettle_s = 1.0;    // for the followers to find each other
 
 std::string turn_topic(const std::string& full_name) {
@@ -39,7 +39,7 @@ std::vector<std::string> split_names(std::string_view names) {
 }
 
 void Node::Impl::set_time(std::int64_t now_ns) {
-  // The first time of all, or a simulation that began anew: timers count from there.
+  // The first time, or a simulation that was restarted: timers count from here.
   if (time.now_ns == 0 || now_ns < time.now_ns) {
     for (auto& timer : timers) timer.next_ns = now_ns + timer.period_ns;
   }
@@ -67,11 +67,11 @@ void Node::run_in_lock_step() {
   impl_->turn_wait_set.attach_condition(time.turns->reader->get_statuscondition());
 }
 
-// One turn: time is set, what is due and what has come is done, all of it, and that is said.
+// One turn: sets the time, runs all due timers, serves all messages, and answers.
 void Node::take_turn(const void* message) {
   auto& time = impl_->time;
   Turn turn = *static_cast<const Turn*>(message);
-  // Asked again, for the answer was late: it is not done twice.
+  // The leader asks again if the answer is late; the turn is not run twice.
   if (turn.number() != time.last_turn) {
     time.last_turn = turn.number();
     impl_->set_time(conversions::to_ns(turn.clock()));
@@ -85,11 +85,7 @@ void Node::take_turn(const void* message) {
 }
 
 void Node::Impl::drain(const Node& node) {
-  for (bool any = true; any && !stopping;) {
-    any = false;
-    for (std::size_t i = 0; i < subscriptions.size() && !stopping; ++i) {
-      if (take_some(node, *subscriptions[i]) > 0) any = true;
-    }
+  while (!stopping && serve(node)) {
   }
 }
 
@@ -105,7 +101,7 @@ void Node::lead_lock_step(const LockStep& lock_step) {
   const std::string prefix = args_.node_namespace == "/" ? "" : args_.node_namespace;
   for (const auto& name : lock_step.followers) {
     time.followers.push_back(name.starts_with('/') ? name : prefix + "/" + name);
-    // Followers ask for no old turns; a recorder that comes late has those from the roll call on.
+    // Followers need no old turns; a recorder that starts late gets those since the roll call.
     time.turns_of.push_back(advertise<Turn>(turn_topic(time.followers.back()), Qos::latched(100)));
   }
   time.on = true;
@@ -121,7 +117,7 @@ void Node::lead_lock_step(const LockStep& lock_step) {
   impl_->turn_wait_set.attach_condition(time.answers->reader->get_statuscondition());
 }
 
-// @return false where the node is stopping
+// @return false if the node is stopping
 bool Node::Impl::give_turn(const Node& node, std::size_t follower) {
   Turn turn;
   turn.clock(conversions::to_stamp(time.now_ns));
@@ -129,7 +125,7 @@ bool Node::Impl::give_turn(const Node& node, std::size_t follower) {
   const std::string& name = time.followers[follower];
   for (int asked = 0; !stopping; ++asked) {
     if (time.begun && asked == 2) {
-      node.log_->error("{} does not answer in lock step: the world waits for it", name);
+      node.log_->error("{} does not answer in lock step: simulated time waits for it", name);
     }
     if (!time.turns_of[follower].publish_raw(&turn)) {
       node.log_->error("a turn could not be given to {}", name);
@@ -146,7 +142,7 @@ bool Node::Impl::give_turn(const Node& node, std::size_t follower) {
   return false;
 }
 
-// Nothing happens before every follower is there and had time to find the others.
+// Simulated time begins when every follower is there and has had time to find the others.
 void Node::Impl::call_the_roll(const Node& node) {
   for (std::size_t i = 0; i < time.followers.size(); ++i) {
     if (!give_turn(node, i)) return;

@@ -94,14 +94,14 @@ TEST(ContainerCall, NamesWhatIsWrong) {
   expect_fault({"prob"}, AllOf(HasSubstr("there is no component 'prob'; did you mean probe?"),
                                HasSubstr("Installed: ")));
   expect_fault({"prob", "robe"}, AllOf(HasSubstr("'prob'"), HasSubstr("'robe'")));
-  expect_fault({"--help-me"}, HasSubstr("options stand behind --ros-args"));
+  expect_fault({"--help-me"}, HasSubstr("options follow --ros-args"));
   expect_fault({"hollow"}, HasSubstr("lacks GOSHAWK_REGISTER_COMPONENT"));
-  expect_fault({"../probe"}, HasSubstr("'../probe' is not a name"));
-  expect_fault({"probe", "--ros-args", "-x", "1"}, HasSubstr("'-x' is no option"));
+  expect_fault({"../probe"}, HasSubstr("'../probe' is not a valid name"));
+  expect_fault({"probe", "--ros-args", "-x", "1"}, HasSubstr("has no option '-x'"));
   expect_fault({"probe", "probe:b", "--ros-args", "-r", "__node:=c"},
                HasSubstr("several components"));
-  expect_fault({"probe", "probe"}, HasSubstr("two nodes named probe"));
-  expect_fault({"probe:a b"}, HasSubstr("'a b' is not a name"));
+  expect_fault({"probe", "probe"}, HasSubstr("two nodes would be named probe"));
+  expect_fault({"probe:a b"}, HasSubstr("'a b' is not a valid name"));
 }
 
 TEST(ContainerCall, ListsAllParameterFaultsOfAllComponents) {

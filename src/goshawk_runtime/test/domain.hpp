@@ -7,7 +7,7 @@ namespace goshawk::runtime_test {
 
 /// One for this program, so that tests at the same time do not meet.
 inline int domain() {
-  static const int held = runtime::hold_private_domain();
+  static const int held = runtime::hold_private_domain().value();
   return held;
 }
 

@@ -164,7 +164,7 @@ TEST(PayloadCheck, NamesWhatIsClaimedAndWhatIsAllowed) {
   EXPECT_THAT(fault, testing::StartsWith("markers claims 1000000000 elements of "));
   EXPECT_THAT(fault, testing::HasSubstr("but the 1000 bytes left allow "));
   EXPECT_THAT(PayloadCheck("std_msgs::msg::dds_::String_").fault_of(claiming(1'000'000, 10)),
-              testing::StartsWith("data claims 1000000 characters, but the 10 bytes left"));
+              testing::StartsWith("data claims 1000000 characters, but only 10 bytes are left"));
   visualization_msgs::msg::MarkerArray markers;
   markers.markers().resize(2);
   Bytes bytes = encode(markers);

@@ -69,6 +69,24 @@ TEST_F(Nodes, DeliverInOrder) {
   EXPECT_TRUE(publisher.wait_acknowledged(5.0));
 }
 
+TEST_F(Nodes, DoDeferredWorkAfterTheMessagesThatAreThere) {
+  const auto publisher = a_.advertise<String>("t", Qos::reliable_last(100));
+  const auto other = a_.advertise<String>("u", Qos::reliable_last(100));
+  std::vector<std::string> events;
+  b_.subscribe<String>("t", Qos::reliable_last(100), [&](const String& m, const auto&) {
+    events.push_back(m.data());
+    b_.later([&, text = m.data()] { events.push_back("later " + text); });
+  });
+  b_.subscribe<String>("u", Qos::reliable_last(100),
+                       [&](const String& m, const auto&) { events.push_back(m.data()); });
+  ASSERT_TRUE(meet(publisher) && meet(other));
+  for (const char* data : {"1", "2"}) ASSERT_TRUE(publisher.publish(text(data)));
+  ASSERT_TRUE(other.publish(text("3")));
+  ASSERT_TRUE(publisher.wait_acknowledged(5.0) && other.wait_acknowledged(5.0));
+  spin_until(b_, [&] { return events.size() == 5; });
+  EXPECT_THAT(events, ElementsAre("1", "2", "3", "later 1", "later 2"));
+}
+
 TEST_F(Nodes, DeliverMessagesOf25Megabytes) {
   const auto publisher = a_.advertise<Octomap>("big", Qos::reliable_last(1));
   Octomap big;

@@ -90,7 +90,7 @@ TEST(Parameters, NamesEachKindOfFault) {
   EXPECT_THAT(fault("planner: astr"), HasSubstr("one of jastar, astar; did you mean astar?"));
   EXPECT_THAT(fault("label: [1, 2]"), HasSubstr("is not a single value"));
   EXPECT_THAT(fault("label:"), HasSubstr("is not a single value"));
-  EXPECT_THAT(fault("count: 1\n    count: 2"), HasSubstr("stands there twice"));
+  EXPECT_THAT(fault("count: 1\n    count: 2"), HasSubstr("is specified twice"));
 }
 
 TEST(Parameters, ListsAllFaultsAtOnce) {

@@ -66,12 +66,12 @@ std::string fault_of(Words words) {
 }
 
 TEST(RosArgs, NamesTheArgumentThatIsWrong) {
-  EXPECT_THAT(fault_of({"-x", "1"}), HasSubstr("'-x' is no option"));
-  EXPECT_THAT(fault_of({"-r"}), HasSubstr("'-r' wants a value"));
+  EXPECT_THAT(fault_of({"-x", "1"}), HasSubstr("has no option '-x'"));
+  EXPECT_THAT(fault_of({"-r"}), HasSubstr("'-r' needs a value"));
   EXPECT_THAT(fault_of({"-r", "a=b"}), HasSubstr("'a=b' is not of the form name:=value"));
   EXPECT_THAT(fault_of({"-p", ":=1"}), HasSubstr("name:=value"));
-  EXPECT_THAT(fault_of({"-r", "a:=b c"}), HasSubstr("'b c' is not a name"));
-  EXPECT_THAT(fault_of({"-r", "__ns:=/a//b"}), HasSubstr("is not a name"));
+  EXPECT_THAT(fault_of({"-r", "a:=b c"}), HasSubstr("'b c' is not a valid name"));
+  EXPECT_THAT(fault_of({"-r", "__ns:=/a//b"}), HasSubstr("is not a valid name"));
   EXPECT_THAT(fault_of({"-r", "__node:=a/b"}), HasSubstr("__ns"));
   EXPECT_THAT(fault_of({"--log-level", "loud"}), HasSubstr("'loud'"));
 }

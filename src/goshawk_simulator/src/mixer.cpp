@@ -11,8 +11,8 @@ namespace {
 
 using Vec4 = Vec4;
 
-// Signs for front left, rear left, rear right, front right. Thrust at +y rolls to the right hand's
-// positive x; thrust at +x pitches the nose up, about -y.
+// Signs for front left, rear left, rear right, front right. Thrust at +y gives a positive
+// roll torque about x; thrust at +x pitches the nose up, a negative torque about y.
 const Vec4 kRoll(1, 1, -1, -1);
 const Vec4 kPitch(-1, 1, 1, -1);
 const Vec4 kYaw(1, -1, 1, -1);

@@ -68,8 +68,7 @@ Packed Plant::derivative(const Packed& x, const Vec4& rotor_command_rad_s,
                          const Vec3& wind_map) const {
   const PlantState s = unpack(x);
   const auto& p = parameters_;
-  // Inside a step the quaternion is off unit length by the order of the error; the rotation must
-  // be one all the same.
+  // Inside a step the quaternion is not quite of unit length, but a rotation must be orthonormal.
   const Eigen::Matrix3d R_map_base = s.body.q_map_base.normalized().toRotationMatrix();
   const Wrench wrench = mixer_.wrench(rotor_thrust_n(s.rotor_speed_rad_s));
 

@@ -38,7 +38,7 @@ void PositionHold::lower(double step_m, double floor_map_m) {
   if (height > floor_map_m) position_map_.z() = std::max(floor_map_m, height - step_m);
 }
 
-ThrustAttitude PositionHold::step(const RigidBodyState& state, const Vec3& disturbance_map) {
+AttitudeSetpoint PositionHold::step(const RigidBodyState& state, const Vec3& disturbance_map) {
   if (braking_ && state.velocity_map.norm() < kAtRest_m_s) {
     braking_ = false;
     position_map_ = state.position_map;
@@ -49,7 +49,7 @@ ThrustAttitude PositionHold::step(const RigidBodyState& state, const Vec3& distu
 }
 
 // The vertical part of the force is served first: losing height is worse than braking later.
-ThrustAttitude PositionHold::thrust_along(const Vec3& acceleration_map) const {
+AttitudeSetpoint PositionHold::thrust_along(const Vec3& acceleration_map) const {
   Vec3 force = mass_kg_ * (acceleration_map + Vec3(0.0, 0.0, kGravity_m_s2));
   force.z() = std::clamp(force.z(), 0.3 * mass_kg_ * kGravity_m_s2, max_thrust_n_);
   const double side = force.head<2>().norm();

@@ -1,5 +1,7 @@
 #include "goshawk/simulator/quadrotor.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 namespace goshawk::simulator {
@@ -21,23 +23,20 @@ Wind::Parameters wind_of(const Config& c) {
           .seed = std::uint64_t(c.gust_seed)};
 }
 
-Status check(const ThrustAttitude& command) {
+Status check(const AttitudeSetpoint& command) {
   const auto refuse = [](const std::string& why) {
     return fail(ErrorCode::invalid_input, "command refused: " + why);
   };
   if (!std::isfinite(command.thrust_n)) return refuse("the thrust is not finite");
   if (command.thrust_n < 0.0) {
-    return refuse("the thrust is " + std::to_string(command.thrust_n) +
-                  " N; rotors only push, it must not be negative");
+    return refuse(fmt::format("the thrust is {:.3g} N: it must not be negative", command.thrust_n));
   }
   const double norm = command.q_map_base.norm();
   if (!(std::abs(norm - 1.0) <= 1e-3)) {
-    return refuse("the attitude's quaternion has length " + std::to_string(norm) +
-                  " and must have unit length");
+    return refuse(fmt::format("the attitude's quaternion has length {:.3g}: it must be 1", norm));
   }
   if (!(command.angular_velocity_base.norm() <= kMaxRate_rad_s)) {
-    return refuse("the body rates are not finite or above " + std::to_string(kMaxRate_rad_s) +
-                  " rad/s");
+    return refuse(fmt::format("the body rates are not finite or above {} rad/s", kMaxRate_rad_s));
   }
   return success();
 }
@@ -73,9 +72,9 @@ Status Quadrotor::reconfigure(const Config& config) {
 
 Status Quadrotor::reset(const Vec3& position_map, double yaw_rad) {
   if (!position_map.allFinite() || !std::isfinite(yaw_rad)) {
-    return fail(ErrorCode::invalid_input, "cannot reset to " + to_text(position_map) +
-                                              " with yaw " + std::to_string(yaw_rad) +
-                                              " rad: position and yaw must be finite");
+    return fail(ErrorCode::invalid_input,
+                fmt::format("cannot reset to {} with yaw {} rad: position and yaw must be finite",
+                            to_text(position_map), yaw_rad));
   }
   PlantState state;
   state.body.position_map = position_map;
@@ -94,7 +93,7 @@ Status Quadrotor::reset(const Vec3& position_map, double yaw_rad) {
   return success();
 }
 
-Status Quadrotor::command(const ThrustAttitude& command) {
+Status Quadrotor::command(const AttitudeSetpoint& command) {
   if (auto status = check(command); !status) return status;
   command_ = command;
   command_.q_map_base.normalize();
@@ -111,8 +110,9 @@ Vec4 Quadrotor::rotor_thrust_n() const {
 
 Status Quadrotor::advance(double dt_s) {
   if (!(dt_s >= 0.0 && dt_s <= kMaxAdvance_s)) {
-    return fail(ErrorCode::invalid_input, "cannot advance by " + std::to_string(dt_s) +
-                                              " s: a time step must lie in [0, 3600] s");
+    return fail(ErrorCode::invalid_input,
+                fmt::format("cannot advance by {} s: a time step must be from 0 to {} s", dt_s,
+                            kMaxAdvance_s));
   }
   remainder_ns_ += std::llround(dt_s * 1e9);
   for (; remainder_ns_ >= kStep_ns; remainder_ns_ -= kStep_ns) step();
@@ -132,8 +132,8 @@ void Quadrotor::step() {
   sensor_.record(state(), time_ns_);
 }
 
-// An accelerometer feels thrust and the forces of the air; thrust is known. Learnt at all times, so
-// that a failsafe in wind does not begin with being blown away.
+// The accelerometer measures thrust and air forces; thrust is known, the rest is the disturbance.
+// It is estimated all the time, so that a failsafe in wind begins with the right compensation.
 void Quadrotor::learn_disturbance(const Vec3& last_velocity_map) {
   const Vec3 acceleration = (state().velocity_map - last_velocity_map) / kStep_s;
   const Vec3 thrust =
@@ -142,7 +142,7 @@ void Quadrotor::learn_disturbance(const Vec3& last_velocity_map) {
   disturbance_map_ += kDisturbanceBandwidth_rad_s * kStep_s * (felt - disturbance_map_);
 }
 
-ThrustAttitude Quadrotor::onboard_target() {
+AttitudeSetpoint Quadrotor::onboard_target() {
   watch_commands();
   if (control_ == Control::commanded) return command_;
   if (control_ == Control::landing) {
@@ -151,7 +151,7 @@ ThrustAttitude Quadrotor::onboard_target() {
   return hold_.step(state(), disturbance_map_);
 }
 
-// Commands that stop coming: first it holds, then it lands.
+// When commands stop coming, the vehicle holds, then lands.
 void Quadrotor::watch_commands() {
   const std::int64_t silent_ns = time_ns_ - command_time_ns_;
   if (control_ == Control::commanded && silent_ns >= command_timeout_ns_) {
@@ -164,8 +164,8 @@ void Quadrotor::watch_commands() {
   }
 }
 
-// Once: the answer stays until another map comes. Looks below the vehicle, not below the place
-// where it should be: wind keeps it beside that all the way down.
+// Checks once per map. It looks below the vehicle, not below the point that it holds: wind keeps
+// the two apart all the way down.
 void Quadrotor::try_to_land() {
   const Status answer = guard_.check(state().position_map);
   if (answer) {

@@ -20,7 +20,7 @@ void advance(Quadrotor& quadrotor, double dt_s) {
   ASSERT_TRUE(quadrotor.advance(dt_s));
 }
 
-ThrustAttitude hover(const Quadrotor& quadrotor) {
+AttitudeSetpoint hover(const Quadrotor& quadrotor) {
   return {.thrust_n = quadrotor.config().vehicle.weight_n()};
 }
 
@@ -37,7 +37,7 @@ void fly_at(Quadrotor& quadrotor, const Vec3& velocity) {
     const Vec3 force = quadrotor.config().vehicle.mass_kg *
                            (3.0 * (velocity - s.velocity_map) + Vec3(0, 0, kGravity_m_s2)) +
                        drag;
-    ThrustAttitude command;
+    AttitudeSetpoint command;
     command.thrust_n = force.norm();
     command.q_map_base = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), force);
     ASSERT_TRUE(quadrotor.command(command));
@@ -59,7 +59,7 @@ TEST(Quadrotor, HoversFromTheStartWhereItWasReset) {
 
 TEST(Quadrotor, TakesTheCommandedAttitudeAndThrust) {
   auto quadrotor = make();
-  ThrustAttitude command{.thrust_n = 12.0};
+  AttitudeSetpoint command{.thrust_n = 12.0};
   command.q_map_base =
       Eigen::AngleAxisd(0.5, Vec3::UnitY()) * Eigen::AngleAxisd(0.3, Vec3::UnitX());
   for (int i = 0; i < 250; ++i) {
@@ -73,7 +73,7 @@ TEST(Quadrotor, TakesTheCommandedAttitudeAndThrust) {
 
 TEST(Quadrotor, AttitudeStepOfThirtyDegreesSettlesWithLittleOvershoot) {
   auto quadrotor = make();
-  ThrustAttitude command = hover(quadrotor);
+  AttitudeSetpoint command = hover(quadrotor);
   const double angle = std::numbers::pi / 6.0;
   command.q_map_base = Eigen::AngleAxisd(angle, Vec3::UnitX());
   double peak = 0.0;
@@ -90,7 +90,7 @@ TEST(Quadrotor, AttitudeStepOfThirtyDegreesSettlesWithLittleOvershoot) {
 
 TEST(Quadrotor, RecoversFromUpsideDown) {
   auto quadrotor = make();
-  ThrustAttitude command = hover(quadrotor);
+  AttitudeSetpoint command = hover(quadrotor);
   command.q_map_base = Eigen::AngleAxisd(std::numbers::pi * 0.999, Vec3::UnitX());
   for (int i = 0; i < 300; ++i) {
     ASSERT_TRUE(quadrotor.command(command));
@@ -153,7 +153,7 @@ TEST(Quadrotor, BrakesInHalfAMetreWhereverItWasHeaded) {
 TEST(Quadrotor, BadCommandsAreRefusedAndTheTimeoutRunsOn) {
   auto quadrotor = make();
   const double nan = std::nan("");
-  std::vector<ThrustAttitude> bad(7, hover(quadrotor));
+  std::vector<AttitudeSetpoint> bad(7, hover(quadrotor));
   bad[0].thrust_n = nan;
   bad[1].thrust_n = -0.1;
   bad[2].thrust_n = std::numeric_limits<double>::infinity();
@@ -179,7 +179,7 @@ TEST(Quadrotor, TheHardestCommandsLeaveTheStateFinite) {
   auto quadrotor = make(config);
   Random random(3);
   for (int i = 0; i < 2000; ++i) {
-    ThrustAttitude command{.thrust_n = random.uniform() < 0.1 ? 1e300 : random.uniform(0, 40)};
+    AttitudeSetpoint command{.thrust_n = random.uniform() < 0.1 ? 1e300 : random.uniform(0, 40)};
     command.q_map_base = Eigen::Quaterniond(random.uniform(-1, 1), random.uniform(-1, 1),
                                             random.uniform(-1, 1), random.uniform(-1, 1));
     command.q_map_base.normalize();
@@ -217,7 +217,7 @@ TEST(Quadrotor, TheSameCallsGiveTheSameBits) {
   config.gust_deviation_m_s = 1.0;
   auto a = make(config), b = make(config);
   for (int i = 0; i < 500; ++i) {
-    ThrustAttitude command = hover(a);
+    AttitudeSetpoint command = hover(a);
     command.q_map_base = Eigen::AngleAxisd(0.1 * std::sin(0.05 * i), Vec3::UnitX());
     ASSERT_TRUE(a.command(command));
     ASSERT_TRUE(b.command(command));
@@ -245,8 +245,8 @@ TEST(Quadrotor, AFailsafeInWindIsNotBlownAway) {
     config.landing = LandingRule::never;
     auto quadrotor = make(config);
     advance(quadrotor, 10.0);
-    const ThrustAttitude balance{.thrust_n = quadrotor.rotor_thrust_n().sum(),
-                                 .q_map_base = quadrotor.state().q_map_base};
+    const AttitudeSetpoint balance{.thrust_n = quadrotor.rotor_thrust_n().sum(),
+                                   .q_map_base = quadrotor.state().q_map_base};
     const Vec3 place = quadrotor.state().position_map;
     ASSERT_TRUE(quadrotor.command(balance));
     for (int i = 0; i < 100; ++i) {

@@ -71,7 +71,7 @@ TEST(Sensor, TheQuadrotorsMeasurementIsItsStateOfBefore) {
   Config config;
   config.sensor.delay_s = 0.03;
   auto quadrotor = Quadrotor::create(config).value();
-  ThrustAttitude up{.thrust_n = 15.0};
+  AttitudeSetpoint up{.thrust_n = 15.0};
   ASSERT_TRUE(quadrotor.command(up));
   ASSERT_TRUE(quadrotor.advance(0.05));
   const auto then = quadrotor.state();

@@ -3,6 +3,7 @@
 #include <spdlog/logger.h>
 
 #include "goshawk/conversions/geometry.hpp"
+#include "goshawk/conversions/status.hpp"
 
 namespace goshawk::stage {
 
@@ -12,12 +13,13 @@ constexpr std::int64_t kComplainEvery_ns = 1'000'000'000;
 
 }  // namespace
 
-StageReporter::StageReporter(runtime::Node& node, std::string implementation)
+StageReporter::StageReporter(runtime::Node& node, StageRole role, std::string implementation)
     : node_(node),
       // Latched and deep: nodes that start later still learn which stages are ready.
       publisher_(node.advertise<goshawk_msgs::msg::StageReport>("stage_report",
                                                                 runtime::Qos::latched(20))) {
-  report_.stage(node.name());
+  report_.stage(conversions::to_msg(role));
+  report_.node(node.full_name());
   report_.implementation(std::move(implementation));
 }
 

@@ -86,7 +86,8 @@ static uint32_t corners(const Grid* g, const Request* r, long start, long goal, 
 static void report(dds_entity_t writer, const Request* r, const char* code, const char* message) {
   goshawk_msgs_msg_StageReport m = {0};
   m.header.frame_id = "map";
-  m.stage = "path_search";
+  m.stage = goshawk_msgs_msg_StageReport_Constants_STAGE_PATH_SEARCH;
+  m.node = "/path_search";
   m.implementation = "cyclone_bfs";
   m.request_id = r != NULL ? r->id : 0;
   m.code = (char*)code;

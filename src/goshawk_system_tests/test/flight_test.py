@@ -127,6 +127,18 @@ class DefaultFlight(FlightCase):
         self.check_tables(folder, flight)
 
 
+class RenamedStages(FlightCase):
+    def test_a_flight_does_not_care_what_nodes_are_called(self):
+        # The plant and the map server get parameters by the names of their nodes.
+        names = {"map_server": "map_server", "simulator": "simulator"}
+        launch = self.sandbox.folder / "renamed.yaml"
+        launch.write_text("stages:\n" + "".join(
+            f"  - {{component: {stage}, node: {names.get(stage, 'my_' + stage)}}}\n"
+            for stage in harness.STAGES), encoding="utf-8")
+        flight, _ = self.fly("--launch", launch)
+        self.check_safe(flight, 1)
+
+
 class ContainerFlight(FlightCase):
     def test_one_process_flies_a_tour_of_two_goals(self):
         flight, folder = self.fly("--launch", "flight_container", "--goal", "3.5,6.1,1.1",

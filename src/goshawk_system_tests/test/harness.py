@@ -41,6 +41,25 @@ CYCLONE = ("<CycloneDDS><Domain><General><Interfaces><NetworkInterface name='lo'
            "</CycloneDDS>")
 
 
+sys.dont_write_bytecode = True
+sys.path[:0] = [str(SOURCE / "idl"), str(SOURCE / "tools")]
+import hold_domain  # noqa: E402
+import idl_to_schema  # noqa: E402
+
+
+def words(struct, field):
+    """The values of a field that have constants: {0: "idle", 3: "arrived"} of NavigatorState's state."""
+    structs = idl_to_schema.parse_file(str(SOURCE / "idl" / "goshawk_msgs.idl"))
+    fields = next(s.fields for s in structs if s.name.endswith("/" + struct))
+    constants = next(f.constants for f in fields if f.name == field)
+    return {c.value: c.name[len(field) + 1:].lower() for c in constants}
+
+
+def node_of(report):
+    """The name of the node that sent a stage_report, without its namespace."""
+    return report["node"].rsplit("/", 1)[-1]
+
+
 def data_file(test, relative):
     """A file of the shared data; where it is absent the test is skipped, and says so."""
     folders = [os.environ.get("GOSHAWK_DATA"), SOURCE.parent / "shared" / "data"]
@@ -48,17 +67,6 @@ def data_file(test, relative):
         if folder and (pathlib.Path(folder) / relative).is_file():
             return str(pathlib.Path(folder) / relative)
     test.skipTest(f"{relative} is in none of {[str(f) for f in folders if f]}: set GOSHAWK_DATA")
-
-
-def udp_ports_in_use():
-    ports = set()
-    for table in ("/proc/net/udp", "/proc/net/udp6"):
-        try:
-            lines = pathlib.Path(table).read_text().splitlines()[1:]
-        except OSError:
-            continue
-        ports.update(int(line.split()[1].rsplit(":", 1)[1], 16) for line in lines)
-    return ports
 
 
 def free_port():
@@ -76,25 +84,8 @@ def free_port():
 class Domain:
     """A DDS domain that nobody else uses, until close()."""
 
-    # Where DDS puts its discovery: these ports of a domain tell whether somebody is in it.
-    KNOCK = range(10, 40, 2)
-
     def __init__(self):
-        used = udp_ports_in_use()
-        for k in range(132):
-            number = 101 + (os.getpid() * 7 + k) % 132
-            if any(7400 + 250 * number + port in used for port in self.KNOCK):
-                continue
-            # Another test of ours that runs beside this one: the name goes with its process.
-            self.lock = socket.socket(socket.AF_UNIX)
-            try:
-                self.lock.bind(f"\0goshawk-test-domain-{number}")
-            except OSError:
-                self.lock.close()
-                continue
-            self.number = number
-            return
-        raise RuntimeError("no DDS domain from 101 to 232 is free")
+        self.number, self.lock = hold_domain.hold_private_domain()
 
     def close(self):
         self.lock.close()

@@ -8,7 +8,7 @@ import struct
 import time
 
 import harness
-from harness import GOSHAWK, Publisher, SystemTest, note, until
+from harness import GOSHAWK, Publisher, SystemTest, node_of, note, until
 
 BRICK = (64, 8, 8)  # voxels
 
@@ -74,7 +74,7 @@ class MapCase(SystemTest):
         options = [word for p in parameters for word in ("-p", p)]
         server = self.sandbox.start(GOSHAWK, "run", "map_server", "--ros-args", *options)
         reports = self.echo("stage_report")
-        self.wait_line(reports, lambda r: r["code"] == "ok" and r["stage"] == "map_server", 60.0)
+        self.wait_line(reports, lambda r: r["code"] == "ok" and node_of(r) == "map_server", 60.0)
         return server, reports
 
 

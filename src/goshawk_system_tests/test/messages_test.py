@@ -8,7 +8,7 @@ import time
 
 import harness
 import second_opinion
-from harness import GOSHAWK, STAGES, note, until
+from harness import GOSHAWK, STAGES, node_of, note, until
 from stack import StackTest, goal_message, position_of
 
 PLACES = [(3.0, 0.0, 1.0), (3.0, 8.0, 2.0)]
@@ -45,7 +45,7 @@ class BadMessages(StackTest):
             if again:
                 self.stack.tell(topic, kind, message)
             return next((r for r in self.stack.reports.lines()[since:]
-                         if r["stage"] == stage and r["code"] != "ok"), None)
+                         if node_of(r) == stage and r["code"] != "ok"), None)
         if not again:
             self.stack.tell(topic, kind, message)
         report = until(answer, 5.0)
@@ -177,7 +177,7 @@ class BadMessages(StackTest):
                            {**odometry, "header": {"frame_id": "odom"}}, "tracker", "wrong_frame",
                            again=True)
         command = {"header": {"frame_id": "map"}, "thrust": -5.0, "orientation": {"w": 1.0}}
-        self.expect_report("command", "goshawk_msgs/msg/ThrustAttitude", command, "simulator",
+        self.expect_report("command", "goshawk_msgs/msg/AttitudeSetpoint", command, "simulator",
                            "invalid_input", "thrust", again=True)
 
     def test_7_a_good_goal_is_flown_afterwards(self):

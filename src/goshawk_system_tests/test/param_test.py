@@ -120,10 +120,10 @@ class LiveParameters(unittest.TestCase):
 
     def test_3_malformed_requests_are_refused_and_the_stage_lives(self):
         kind = "goshawk_msgs/msg/ParameterRequest"
-        good = {"id": 5, "client": "c", "node": "/trajectory_optimizer", "verb": "get"}
+        good = {"id": 5, "client": "c", "node": "/trajectory_optimizer", "verb": "VERB_GET"}
         self.param("get", "trajectory_optimizer", "yaw")
-        for words, changes in [("has id 0", {"id": 0}), ("neither get nor set", {"verb": "drop"}),
-                               ("sets nothing", {"verb": "set"})]:
+        for words, changes in [("has id 0", {"id": 0}), ("neither VERB_GET nor VERB_SET", {"verb": 7}),
+                               ("sets nothing", {"verb": "VERB_SET"})]:
             with self.subTest(words):
                 # A latched request, again and again, until the answer was heard.
                 answer = None

@@ -5,10 +5,11 @@ import json
 import time
 
 import harness
-from harness import GOSHAWK, Publisher, until
+from harness import GOSHAWK, Publisher, node_of, until, words
 from recording_case import RecordingCase
 from stack import Launch
 
+STATES = words("NavigatorState", "state")
 PLANNING = ["map_server", "path_search", "corridor_builder", "trajectory_optimizer"]
 INPUTS = {
     "path_search": (["map/voxels", "map/voxels/updates", "plan_request"], "/path"),
@@ -38,7 +39,7 @@ class ReplayedStages(RecordingCase):
         reports = self.sandbox.start(GOSHAWK, "topic", "echo", "stage_report", "--json",
                                      "--timeout", "60", env=env)
         launch = Launch(self.sandbox, file, *ros_args, env=env)
-        self.assertTrue(until(lambda: {r["stage"] for r in reports.lines()} >= set(stages), 30),
+        self.assertTrue(until(lambda: {node_of(r) for r in reports.lines()} >= set(stages), 30),
                         launch.tails())
         return launch, reports
 
@@ -82,7 +83,7 @@ class ReplayedStages(RecordingCase):
         def ends():
             """A request ends with a trajectory, or with the stage that cannot go on."""
             return [r for r in reports.lines() if r["request_id"] != 0 and
-                    (r["code"] != "ok" or r["stage"] == "trajectory_optimizer")]
+                    (r["code"] != "ok" or node_of(r) == "trajectory_optimizer")]
         self.assertTrue(until(lambda: len(ends()) >= len(GOALS), 20.0), launch.tails())
         time.sleep(0.5)  # the recorder may be behind
         requests.process.stop()
@@ -114,7 +115,7 @@ class ReplayedStages(RecordingCase):
 
 
 def answers_of(stage, reports):
-    return [r for r in reports if r["stage"] == stage and r["request_id"] != 0]
+    return [r for r in reports if node_of(r) == stage and r["request_id"] != 0]
 
 
 PLANT = "simulator"
@@ -201,7 +202,7 @@ class LockStepReplay(RecordingCase):
         file = self.fly()
         again = self.replay(file)
         counts = self.contents(file)["counts"]
-        states = [m["value"]["state"] for m in self.messages(file, "navigator_state")]
+        states = [STATES[m["value"]["state"]] for m in self.messages(file, "navigator_state")]
         self.assertIn("flying", states)
         self.assertGreater(counts["/odom"], 1500)
         for stage, topics in OUTPUTS.items():
@@ -216,7 +217,7 @@ class LockStepReplay(RecordingCase):
         for stage in REPORTING:
             with self.subTest(stage=stage, topic="stage_report"):
                 old, new = ([(r["header"]["stamp"], r["request_id"], r["code"], r["message"])
-                             for r in reports if r["stage"] == stage] for reports in (then, now))
+                             for r in reports if node_of(r) == stage] for reports in (then, now))
                 harness.note(f"{stage}: {len(old)} reports, again {len(new)}")
                 self.assertGreater(len(new), 0)
                 self.assertLessEqual(abs(len(new) - len(old)), 1)

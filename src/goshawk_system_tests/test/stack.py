@@ -7,7 +7,7 @@ import re
 import unittest
 import uuid
 
-from harness import GOSHAWK, STAGES, Publisher, Sandbox, SystemTest, until
+from harness import GOSHAWK, STAGES, Publisher, Sandbox, SystemTest, node_of, until, words
 
 
 class Launch:
@@ -46,6 +46,18 @@ def spawned(logs):
     return {name: int(pid) for name, pid in re.findall(r"spawned: '([^']+)' with pid (\d+)", text)}
 
 
+class States:
+    """navigator_state as it comes, with its state as a word: "arrived"."""
+
+    WORDS = words("NavigatorState", "state")
+
+    def __init__(self, echo):
+        self.echo = echo
+
+    def lines(self):
+        return [{**m, "state": self.WORDS[m["state"]]} for m in self.echo.lines()]
+
+
 class Stack:
     """Every stage launched in a world of its own, with the topics that tell what happens."""
 
@@ -57,7 +69,7 @@ class Stack:
             raise AssertionError(f"the world could not be made: {made}")
         self.launch = Launch(sandbox, file, "-p", f"map_server:map_file:={self.world}", *ros_args)
         self.reports = self.echo("stage_report")
-        self.states = self.echo("navigator_state")
+        self.states = States(self.echo("navigator_state"))
         self.odom = self.echo("odom", "--no-arr")
         self.publishers = {}
 
@@ -67,7 +79,7 @@ class Stack:
 
     def wait_ready(self, timeout_s=30.0):
         def missing():
-            ready = {r["stage"] for r in self.reports.lines()
+            ready = {node_of(r) for r in self.reports.lines()
                      if r["request_id"] == 0 and r["code"] == "ok"}
             return set(STAGES) - ready
         until(lambda: not missing() and self.states.lines() and self.place(), timeout_s)

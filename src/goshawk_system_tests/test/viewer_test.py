@@ -103,7 +103,7 @@ class FlightPage(SystemTest):
         foreign.write_bytes(b"not a recording" * 100)
         folder = self.sandbox.folder / "plan"
         folder.mkdir()
-        for what, sentence in [(foreign, "is no MCAP recording"), (sample, "cannot be read"),
+        for what, sentence in [(foreign, "is not an MCAP recording"), (sample, "cannot be read"),
                                (folder, "is it a flight folder, or a recording?")]:
             with self.subTest(what=what.name):
                 outcome = self.sandbox.goshawk("view", what, "--check")

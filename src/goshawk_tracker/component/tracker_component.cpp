@@ -28,6 +28,16 @@ Tracker make_tracker(const Config& config) {
   return *std::move(tracker);
 }
 
+std::uint8_t to_msg(Mode mode) {
+  namespace constants = goshawk_msgs::msg::TrackingState_Constants;
+  static_assert(std::uint8_t(Mode::idle) == constants::MODE_IDLE &&
+                std::uint8_t(Mode::hold) == constants::MODE_HOLD &&
+                std::uint8_t(Mode::follow) == constants::MODE_FOLLOW &&
+                std::uint8_t(Mode::brake) == constants::MODE_BRAKE &&
+                std::uint8_t(Mode::land) == constants::MODE_LAND);
+  return std::uint8_t(mode);
+}
+
 /// What a flight's control steps cost, and how evenly they came.
 class StepStatistics {
  public:
@@ -79,8 +89,8 @@ class TrackerComponent : public Component {
             node.parameters<Config>([this](const Config& c) { return tracker_.reconfigure(c); })),
         tracker_(make_tracker(config_)),
         odometry_clock_(config_.odometry_timeout_s),
-        reporter_(node, config_.controller),
-        commands_(node.advertise<msg::ThrustAttitude>("command", Qos::best_effort())),
+        reporter_(node, StageRole::tracker, config_.controller),
+        commands_(node.advertise<msg::AttitudeSetpoint>("command", Qos::best_effort())),
         states_(node.advertise<msg::TrackingState>("tracking_state", Qos::best_effort())) {
     node.subscribe<msg::CommittedTrajectory>(
         "committed_trajectory", Qos::latched(),
@@ -202,7 +212,7 @@ class TrackerComponent : public Component {
     report_fault(status);
     msg::TrackingState m;
     m.header(conversions::make_header(stamp_ns));
-    m.mode(std::string(to_string(status.mode)));
+    m.mode(to_msg(status.mode));
     m.request_id(status.trajectory_id);
     m.time_in_trajectory(status.progress_s);
     m.reference(conversions::to_point(status.reference.position));
@@ -215,9 +225,9 @@ class TrackerComponent : public Component {
   Tracker tracker_;
   OdometryClock odometry_clock_;
   StageReporter reporter_;
-  Publisher<msg::ThrustAttitude> commands_;
+  Publisher<msg::AttitudeSetpoint> commands_;
   Publisher<msg::TrackingState> states_;
-  msg::ThrustAttitude command_message_;
+  msg::AttitudeSetpoint command_message_;
   std::optional<MapSubscription> map_;
   std::optional<Commit> waiting_;
   StepStatistics steps_;

@@ -5,9 +5,9 @@
 
 namespace goshawk::tracker {
 
-ThrustAttitude thrust_attitude_of(const Vec3& specific_force_map,
-                                  const Vec3& specific_force_rate_map, double yaw_rad,
-                                  double yaw_rate_rad_s, double mass_kg) {
+AttitudeSetpoint thrust_attitude_of(const Vec3& specific_force_map,
+                                    const Vec3& specific_force_rate_map, double yaw_rad,
+                                    double yaw_rate_rad_s, double mass_kg) {
   const double force = specific_force_map.norm();
   const Vec3 heading(std::cos(yaw_rad), std::sin(yaw_rad), 0.0);
   const Vec3 heading_left(-heading.y(), heading.x(), 0.0);

@@ -37,8 +37,8 @@ void PositionController::reset() {
   last_force_m_s2_ = kGravity_m_s2;
 }
 
-ThrustAttitude PositionController::step(const RigidBodyState& state, const Target& target,
-                                        double dt_s) {
+AttitudeSetpoint PositionController::step(const RigidBodyState& state, const Target& target,
+                                          double dt_s) {
   const Vec3 acceleration_model = modelled_acceleration(state);
   observer_.update(state.velocity_map, acceleration_model, dt_s);
 

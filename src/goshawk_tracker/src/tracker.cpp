@@ -110,8 +110,8 @@ void Tracker::brake(std::int64_t now_ns) {
   reference_.brake(now_ns, config_.brake_acceleration_m_s2);
 }
 
-Result<ThrustAttitude> Tracker::step(const RigidBodyState& state, std::int64_t stamp_ns,
-                                     std::int64_t now_ns) {
+Result<AttitudeSetpoint> Tracker::step(const RigidBodyState& state, std::int64_t stamp_ns,
+                                       std::int64_t now_ns) {
   if (within_bound(now_ns)) notice_stall(now_ns);
   if (auto status = check_odometry(state, stamp_ns, now_ns); !status) {
     refused_ = status.error();

@@ -61,7 +61,7 @@ class ClosedLoop {
  private:
   struct Arrival {
     std::int64_t time_ns;
-    ThrustAttitude command;
+    AttitudeSetpoint command;
   };
   void exchange();
   void take(const simulator::Measurement& measured, std::int64_t now_ns);

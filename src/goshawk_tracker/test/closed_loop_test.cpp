@@ -191,7 +191,7 @@ TEST_P(ClosedLoopTest, AStepOfOneMetreSettlesWithoutMuchOvershoot) {
 
 TEST_P(ClosedLoopTest, RecoversFromATiltOfThirtyDegrees) {
   ClosedLoop loop(config_, vehicle_);
-  ThrustAttitude tilted{.thrust_n = vehicle_.vehicle.weight_n()};
+  AttitudeSetpoint tilted{.thrust_n = vehicle_.vehicle.weight_n()};
   tilted.q_map_base = Eigen::AngleAxisd(0.5236, Vec3::UnitX());
   for (int i = 0; i < 300; ++i) {
     ASSERT_TRUE(loop.vehicle.command(tilted));

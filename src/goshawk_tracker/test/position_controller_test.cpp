@@ -17,7 +17,7 @@ Config without_observer(const std::string& controller = "pd") {
   return config;
 }
 
-double tilt_rad(const ThrustAttitude& command) {
+double tilt_rad(const AttitudeSetpoint& command) {
   return std::acos(std::min(1.0, (command.q_map_base * Vec3::UnitZ()).z()));
 }
 

@@ -1,3 +1,5 @@
+#include <functional>
+
 #include "goshawk/runtime/component.hpp"
 #include "goshawk/stage/intake.hpp"
 #include "goshawk/trajectory_optimizer/config.hpp"
@@ -24,11 +26,10 @@ class TrajectoryOptimizerComponent : public Component {
       : node_(node),
         config_(node.parameters<Config>([this](const Config& c) { return reconfigure(c); })),
         optimizer_(make_optimizer(config_)),
-        reporter_(node, std::string(optimizer_.implementation())),
-        publisher_(node.advertise<msg::BezierTrajectory>("trajectory", Qos::reliable_last())) {
-    node.subscribe<msg::Corridor>(
-        "corridor", Qos::reliable_last(),
-        [this](const msg::Corridor& m, const MessageInfo& info) { on_corridor(m, info); });
+        reporter_(node, StageRole::trajectory_optimizer, std::string(optimizer_.implementation())),
+        publisher_(node.advertise<msg::BezierTrajectory>("trajectory", Qos::reliable_last())),
+        corridors_(node, reporter_, "corridor",
+                   std::bind_front(&TrajectoryOptimizerComponent::on_corridor, this)) {
     reporter_.ready("optimises with " + std::string(optimizer_.implementation()));
   }
 
@@ -40,21 +41,18 @@ class TrajectoryOptimizerComponent : public Component {
     return success();
   }
 
-  void on_corridor(const msg::Corridor& m, const MessageInfo& info) {
-    Timing timing{.wire_ns = wire_time_ns(m.header(), info)};
-    auto request = open_request(m.request(), node_.now_ns(), reporter_, timing);
-    if (!request) return;
+  void on_corridor(const msg::Corridor& m, const PlanRequest& request, Timing timing) {
     auto [solution, compute_ns] = timed([&]() -> Result<Solution> {
       const auto corridor = conversions::from_msg(m);
       if (!corridor) return corridor.error();
-      const Query query{.duration_s = request->duration_s,
-                        .out_of_time = [&] { return !check_deadline(*request, node_.now_ns()); }};
-      return optimizer_.optimise(*corridor, request->start, request->goal, request->limits, query);
+      const Query query{.duration_s = request.duration_s,
+                        .out_of_time = [&] { return !check_deadline(request, node_.now_ns()); }};
+      return optimizer_.optimise(*corridor, request.start, request.goal, request.limits, query);
     });
     timing.compute_ns = compute_ns;
-    if (!solution) return reporter_.failed(request->id, solution.error(), timing);
-    publish(m, *request, *solution, compute_ns);
-    reporter_.answered(request->id, timing,
+    if (!solution) return reporter_.failed(request.id, solution.error(), timing);
+    publish(m, request, *solution, compute_ns);
+    reporter_.answered(request.id, timing,
                        {{"pieces", double(solution->trajectory.pieces.size())},
                         {"iterations", double(solution->iterations)},
                         {"duration_s", solution->trajectory.duration_s()},
@@ -109,6 +107,7 @@ class TrajectoryOptimizerComponent : public Component {
   TrajectoryOptimizer optimizer_;
   StageReporter reporter_;
   Publisher<msg::BezierTrajectory> publisher_;
+  Intake<msg::Corridor> corridors_;
 };
 
 }  // namespace

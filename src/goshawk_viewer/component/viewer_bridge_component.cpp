@@ -91,7 +91,7 @@ class ViewerBridgeComponent : public Component {
         server_(start_server(config_)),
         context_(join()),
         dds_(*context_, "viewer_bridge_reader"),
-        reporter_(node, "foxglove.websocket.v1") {
+        reporter_(node, StageRole::viewer, "foxglove.websocket.v1") {
     dds_.every(kLookAround_s, [this] { look_around(); });
     dds_.every(kServe_s, [this] { serve(); });
     thread_ = std::thread([this] { dds_.spin(); });

@@ -39,7 +39,7 @@ class VisualizerComponent : public Component {
           config_ = c;  // of the pictures to come
           return success();
         })),
-        reporter_(node, "markers"),
+        reporter_(node, StageRole::viewer, "markers"),
         obstacles_(node.advertise<MarkerArray>("view/obstacles", Qos::latched())),
         plan_(node.advertise<MarkerArray>("view/plan", Qos::latched())),
         flown_(node.advertise<MarkerArray>("view/flown", Qos::latched())) {

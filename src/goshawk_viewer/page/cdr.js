@@ -5,19 +5,28 @@ Goshawk.Schema = class {
   constructor(text) {
     this.types = new Map();
     let fields = [];
+    let constants = [];  // [name, value] of the field that follows
     this.root = fields;
     for (const raw of text.split('\n')) {
       const line = raw.split('#')[0].trim();
       if (!line) continue;
       if (line.startsWith('=')) { fields = []; continue; }
       if (line.startsWith('MSG:')) { this.types.set(line.slice(4).trim(), fields); continue; }
+      const constant = line.match(/^\w+\s+(\w+)\s*=\s*(\d+)$/);
+      if (constant) { constants.push([constant[1], Number(constant[2])]); continue; }
       const match = line.match(/^([\w/]+)(\[(\d*)\])?\s+(\w+)$/);
       if (match) {
         fields.push({type: match[1], name: match[4],
                      arity: match[2] === undefined ? 'single' : match[3] ? 'array' : 'sequence',
-                     size: Number(match[3] || 0)});
+                     size: Number(match[3] || 0), words: this.words(match[4], constants)});
+        constants = [];
       }
     }
+  }
+
+  // A value with a constant is read as its word: STATE_ARRIVED of the field `state` is 'arrived'.
+  words(field, constants) {
+    return new Map(constants.map(([name, value]) => [value, name.slice(field.length + 1).toLowerCase()]));
   }
 
   read(view) {
@@ -29,7 +38,10 @@ Goshawk.Schema = class {
 
   struct(fields) {
     const value = {};
-    for (const field of fields) value[field.name] = this.field(field);
+    for (const field of fields) {
+      const read = this.field(field);
+      value[field.name] = field.words.get(read) ?? read;
+    }
     return value;
   }
 

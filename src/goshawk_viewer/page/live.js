@@ -3,7 +3,7 @@
 const kPlotted = 20;     // [s] that the plots show
 const kTracked = 12000;  // samples of the flown track that are kept
 const kStages = ['map_server', 'path_search', 'corridor_builder', 'trajectory_optimizer', 'navigator',
-                 'tracker', 'simulator', 'flight_check'];
+                 'tracker', 'vehicle', 'flight_check', 'viewer'];
 
 const seconds = stamp => stamp.sec + 1e-9 * stamp.nanosec;
 const xyz = p => [p.x, p.y, p.z];
@@ -173,16 +173,17 @@ Goshawk.LivePage = class extends Goshawk.Page {
     this.nextMap = time + Math.max(0.2, 5e-3 * (performance.now() - begin));
   }
 
-  // The newest that each stage said: how long it took, or what is wrong, in its own words.
+  // The newest report of each node: how long its stage took, or what is wrong.
   onReport(m) {
     if (m.code === 'ok' && m.request_id === 0) return;
-    this.reports.set(m.stage, m);
-    const place = stage => (kStages.indexOf(stage) + kStages.length + 1) % (kStages.length + 1);
-    const sorted = [...this.reports].sort(([a], [b]) => place(a) - place(b));
-    $('reports').replaceChildren(...sorted.flatMap(([stage, report]) => {
+    this.reports.set(m.node, m);
+    const place = report => (kStages.indexOf(report.stage) + kStages.length + 1) % (kStages.length + 1);
+    const sorted = [...this.reports.values()].sort((a, b) => place(a) - place(b));
+    $('reports').replaceChildren(...sorted.flatMap(report => {
       const dt = document.createElement('dt'), dd = document.createElement('dd');
       const good = report.code === 'ok';
-      dt.textContent = stage;
+      dt.textContent = report.stage === 'other' ? report.node : report.stage;
+      dt.title = report.node;
       dd.textContent = good ? this.took(report.compute_ns) : report.code;
       dd.className = good ? '' : 'bad';
       dd.title = report.message;

@@ -243,13 +243,6 @@ void Server::send_to(std::uint64_t client, std::uint32_t channel, std::int64_t s
   impl_->send_message(client, found->second, channel, stamp_ns, cdr);
 }
 
-bool Server::has_subscriber(std::uint32_t channel) const {
-  const std::scoped_lock lock(impl_->mutex);
-  return std::ranges::any_of(impl_->clients, [&](const auto& c) {
-    return c.second.session.subscription(channel) != nullptr;
-  });
-}
-
 void Server::tell(std::uint64_t client, StatusLevel level, const std::string& sentence) {
   const std::scoped_lock lock(impl_->mutex);
   if (impl_->clients.contains(client)) impl_->send_text(client, to_json(level, sentence));

@@ -44,7 +44,7 @@ const told = await page.evaluate(address => new Promise(resolve => {
   const socket = new WebSocket(address, ['foxglove.websocket.v1']);
   socket.onopen = () => {
     socket.send(JSON.stringify({op: 'advertise', channels: [
-      {id: 1, topic: 'command', encoding: 'json', schemaName: 'goshawk_msgs/msg/ThrustAttitude'}]}));
+      {id: 1, topic: 'command', encoding: 'json', schemaName: 'goshawk_msgs/msg/AttitudeSetpoint'}]}));
     socket.send(Uint8Array.of(1, 1, 0, 0, 0, 123, 125));  // {}
   };
   socket.onmessage = event => {

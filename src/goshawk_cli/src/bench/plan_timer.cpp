@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "goshawk/conversions/status.hpp"
+
 namespace goshawk::cli {
 namespace {
 
@@ -59,13 +61,14 @@ void PlanTimer::on_trajectory(const msg::BezierTrajectory& m, const MessageInfo&
 }
 
 void PlanTimer::on_report(const msg::StageReport& m) {
-  if (m.request_id() == 0 && m.code() == "ok") ready_[m.stage()] = m.implementation();
+  const std::string stage(to_string(conversions::stage_role_of(m.stage())));
+  if (m.request_id() == 0 && m.code() == "ok") ready_.insert(stage);
   if (m.request_id() != request_.id) return;
   if (m.code() == "ok") {
-    sample_.stages[m.stage()] = {m.compute_ns(), m.wire_ns()};
+    sample_.stages[stage] = {m.compute_ns(), m.wire_ns()};
   } else {
-    failure_ = fail(ErrorCode::invalid_input,
-                    fmt::format("{}: {}: {}", m.stage(), m.code(), m.message()));
+    failure_ =
+        fail(ErrorCode::invalid_input, fmt::format("{}: {}: {}", stage, m.code(), m.message()));
   }
 }
 

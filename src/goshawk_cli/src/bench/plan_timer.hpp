@@ -2,6 +2,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "goshawk/conversions/plan.hpp"
@@ -43,7 +44,7 @@ class PlanTimer {
   runtime::Node& node_;
   runtime::Publisher<goshawk_msgs::msg::PlanRequest> requests_;
   PlanRequest request_;
-  std::map<std::string, std::string> ready_;  // implementations by stage
+  std::set<std::string> ready_;  // roles
   PlanSample sample_;
   std::int64_t reply_wire_ns_ = 0;
   std::optional<Error> failure_;

@@ -46,10 +46,6 @@ std::vector<char*> pointers_to(std::vector<std::string>& words) {
   return pointers;
 }
 
-// Below the kernel's ephemeral ports (32768 and up), above the domains that people choose.
-constexpr int kFirstPrivateDomain = 20;
-constexpr int kPrivateDomains = 80;
-
 }  // namespace
 
 Result<int> private_domain() {
@@ -57,12 +53,7 @@ Result<int> private_domain() {
   if (!options) return options.error();
   const char* set = std::getenv("ROS_DOMAIN_ID");
   if (set != nullptr && *set != '\0') return options->domain;
-  try {
-    return runtime::hold_private_domain(kFirstPrivateDomain, kPrivateDomains);
-  } catch (const std::runtime_error& all_held) {
-    return fail(ErrorCode::io_failed,
-                fmt::format("{}: stop other flights, or set ROS_DOMAIN_ID", all_held.what()));
-  }
+  return runtime::hold_private_domain();
 }
 
 Result<ChildVerb> ChildVerb::start(const std::vector<std::string>& verb, int domain,

@@ -9,10 +9,13 @@
 #include "flight/child_verb.hpp"
 #include "flight/flight_folder.hpp"
 #include "flight/recorder_process.hpp"
+#include "goshawk/conversions/status.hpp"
 #include "goshawk/introspection/interruptible.hpp"
 
 namespace goshawk::cli {
 namespace {
+
+namespace state = goshawk_msgs::msg::NavigatorState_Constants;
 
 constexpr double kReady_s = 30.0;     // longest wait for the stages
 constexpr double kDiscovery_s = 0.5;  // among stages that we have found, it takes no longer
@@ -62,14 +65,17 @@ class Flight {
   }
 
   Status wait_until_ready() {
-    static constexpr const char* kNeeded[] = {
-        "map_server", "path_search", "corridor_builder", "trajectory_optimizer",
-        "navigator",  "tracker",     "simulator"};
+    static constexpr StageRole kNeeded[] = {
+        StageRole::map_server,       StageRole::path_search,
+        StageRole::corridor_builder, StageRole::trajectory_optimizer,
+        StageRole::navigator,        StageRole::tracker,
+        StageRole::vehicle};
     Status lives = success();
     const auto missing = [&] {
       std::string names;
-      for (const char* stage : kNeeded) {
-        if (!record_.is_ready(stage)) names += (names.empty() ? "" : ", ") + std::string(stage);
+      for (const StageRole stage : kNeeded) {
+        if (record_.is_ready(stage)) continue;
+        names += fmt::format("{}{}", names.empty() ? "" : ", ", to_string(stage));
       }
       return names;
     };
@@ -89,7 +95,8 @@ class Flight {
       return fail(ErrorCode::stage_silent, "no odometry came, or no stage reads goal_pose");
     }
     if (!record_.listen(5.0, recorded_)) say_("the recorder does not hear all stages yet");
-    // The stages that we have found may not have found each other yet: the first plan needs the map.
+    // The stages that we have found may not have found each other yet: the first plan needs the
+    // map.
     record_.listen(kDiscovery_s, [] { return false; });
     say_("all stages ready");
     return success();
@@ -106,36 +113,42 @@ class Flight {
       lives = launch_lives();
       if (record_.now_ns() - said_ns > 1'000'000'000) {
         said_ns = record_.now_ns();
-        say_say_(goal, number, double(said_ns - begin_ns) * 1e-9);
+        say_progress(goal, number, double(said_ns - begin_ns) * 1e-9);
       }
-      const auto& state = record_.navigator().state();
-      return !lives || state == "arrived" || state == "failed";
+      const auto& answer = record_.navigator();
+      return !lives || (answer && (answer->state() == state::STATE_ARRIVED ||
+                                   answer->state() == state::STATE_FAILED));
     });
-    const auto& state = record_.navigator();
-    leg.arrived = lives.ok() && answered && state.state() == "arrived";
-    leg.request_id = state.request_id();
+    const auto answer = record_.navigator().value_or(goshawk_msgs::msg::NavigatorState());
+    leg.arrived = lives.ok() && answered && answer.state() == state::STATE_ARRIVED;
+    leg.request_id = answer.request_id();
     leg.flight_time_s = double(record_.now_ns() - begin_ns) * 1e-9;
     if (!lives) {
       leg.code = to_string(lives.code());
       leg.message = lives.error().message;
     } else if (!answered) {
       leg.code = to_string(ErrorCode::deadline_exceeded);
-      leg.message = fmt::format("not arrived within {:g} s; navigator is {}", options_.timeout_s,
-                                state.state().empty() ? "silent" : state.state());
+      leg.message = fmt::format("not arrived within {:g} s; the navigator is {}",
+                                options_.timeout_s, state_word("silent"));
     } else {
-      leg.code = state.code();
-      leg.message = state.message();
+      leg.code = answer.code();
+      leg.message = answer.message();
     }
     return leg;
   }
 
-  void say_say_(const Vec3& goal, std::size_t number, double elapsed_s) const {
-    const auto& state = record_.navigator().state();
-    say_(fmt::format("leg {} of {}: {:<8} {:5.1f} s, {:6.2f} m to go, tracking error {:5.1f} mm",
-                     number, p_.tour.goals_map.size(), state.empty() ? "asked" : state, elapsed_s,
-                     (record_.flown().back().state.position_map - goal).norm(),
-                     record_.errors().empty() ? 0.0
-                                              : 1e3 * record_.errors().back().position_error_m));
+  /// @param none without an answer from the navigator
+  std::string_view state_word(std::string_view none) const {
+    const auto& answer = record_.navigator();
+    return answer ? conversions::navigator_state_word(answer->state()) : none;
+  }
+
+  void say_progress(const Vec3& goal, std::size_t number, double elapsed_s) const {
+    say_(fmt::format(
+        "leg {} of {}: {:<8} {:5.1f} s, {:6.2f} m to go, tracking error {:5.1f} mm", number,
+        p_.tour.goals_map.size(), state_word("asked"), elapsed_s,
+        (record_.flown().back().state.position_map - goal).norm(),
+        record_.errors().empty() ? 0.0 : 1e3 * record_.errors().back().position_error_m));
   }
 
   Result<flight_check::Verdict> judge() const {
@@ -163,10 +176,11 @@ Status check_domain_is_free(runtime::Context& context, runtime::Node& node, int 
   for (const auto& participant : context.participants()) {
     for (const auto& name : participant.nodes) {
       if (!name.ends_with("/navigator")) continue;
-      return fail(ErrorCode::io_failed,
-                  fmt::format("domain {} is in use: {} of the process {} is in it. Stop that flight, "
-                              "or set ROS_DOMAIN_ID to another domain",
-                              domain, name, participant.name));
+      return fail(
+          ErrorCode::io_failed,
+          fmt::format("domain {} is in use: {} of the process {} is in it. Stop that flight, "
+                      "or set ROS_DOMAIN_ID to another domain",
+                      domain, name, participant.name));
     }
   }
   return success();

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <utility>
 
+#include "goshawk/conversions/status.hpp"
 #include "goshawk/conversions/vehicle.hpp"
 
 namespace goshawk::cli {
@@ -11,11 +12,9 @@ namespace {
 // Samples that may wait to be read: in lock step they come much faster than real time.
 constexpr int kWholeTrack = 10'000;
 
-}  // namespace
-namespace {
-
 using namespace goshawk::runtime;
 namespace msg = goshawk_msgs::msg;
+namespace mode = goshawk_msgs::msg::TrackingState_Constants;
 
 constexpr double kListenStep_s = 0.05;
 
@@ -26,10 +25,11 @@ FlightRecorder::FlightRecorder(Node& node)
       goals_(node.advertise<geometry_msgs::msg::PoseStamped>("goal_pose", Qos::reliable_last())) {
   node.subscribe<msg::StageReport>("stage_report", Qos::latched(100),
                                    [this](const msg::StageReport& m, const MessageInfo&) {
+                                     const auto role = conversions::stage_role_of(m.stage());
                                      if (m.request_id() != 0) {
-                                       requests_[m.request_id()].reports[m.stage()] = m;
+                                       requests_[m.request_id()].reports[role] = m;
                                      } else if (m.code() == "ok") {
-                                       ready_.insert(m.stage());
+                                       ready_.insert(role);
                                      }
                                    });
   node.subscribe<msg::NavigatorState>(
@@ -59,7 +59,7 @@ FlightRecorder::FlightRecorder(Node& node)
       });
   node.subscribe<msg::TrackingState>("tracking_state", Qos::best_effort(100),
                                      [this](const msg::TrackingState& m, const MessageInfo&) {
-                                       if (m.mode() != "follow") return;
+                                       if (m.mode() != mode::MODE_FOLLOW) return;
                                        errors_.push_back({conversions::to_ns(m.header().stamp()),
                                                           m.request_id(), m.position_error()});
                                      });
@@ -80,8 +80,8 @@ void FlightRecorder::send_goal(const Vec3& goal_map) {
   goal.header(conversions::make_header(node_.now_ns()));
   goal.pose().position(conversions::to_point(goal_map));
   goal.pose().orientation().w(1.0);
-  // What the navigator said of an earlier goal must not be taken for the answer to this one.
-  navigator_ = {};
+  // The answer to an earlier goal is not the answer to this one.
+  navigator_.reset();
   if (auto status = goals_.publish(goal); !status) throw StartupFault(status.error());
 }
 

@@ -2,9 +2,11 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "goshawk/conversions/plan.hpp"
+#include "goshawk/core/stage_role.hpp"
 #include "goshawk/core/vehicle.hpp"
 #include "goshawk/runtime/node.hpp"
 #include "goshawk_msgs.h"
@@ -23,11 +25,11 @@ struct TrackedError {
   double position_error_m = 0.0;
 };
 
-/// What the stages said of one request.
+/// What the stages reported about one request.
 struct RequestRecord {
   goshawk_msgs::msg::Path path;
   goshawk_msgs::msg::Corridor corridor;
-  std::map<std::string, goshawk_msgs::msg::StageReport> reports;  // newest of each stage
+  std::map<StageRole, goshawk_msgs::msg::StageReport> reports;  // newest of each stage
 };
 
 /// Listens to a whole flight, sends goals, and keeps what came.
@@ -40,8 +42,9 @@ class FlightRecorder {
   /// Listens until done() or for timeout_s. @return whether done() came true
   bool listen(double timeout_s, const std::function<bool()>& done);
 
-  bool is_ready(const std::string& stage) const { return ready_.contains(stage); }
-  const goshawk_msgs::msg::NavigatorState& navigator() const { return navigator_; }
+  bool is_ready(StageRole stage) const { return ready_.contains(stage); }
+  /// The navigator's answer to the newest goal, or nothing before it.
+  const std::optional<goshawk_msgs::msg::NavigatorState>& navigator() const { return navigator_; }
   const std::vector<FlownState>& flown() const { return flown_; }
   const std::vector<TrackedError>& errors() const { return errors_; }
   const std::vector<CommittedTrajectory>& committed() const { return committed_; }
@@ -55,8 +58,8 @@ class FlightRecorder {
 
   runtime::Node& node_;
   runtime::Publisher<geometry_msgs::msg::PoseStamped> goals_;
-  std::set<std::string> ready_;
-  goshawk_msgs::msg::NavigatorState navigator_;
+  std::set<StageRole> ready_;
+  std::optional<goshawk_msgs::msg::NavigatorState> navigator_;
   std::vector<FlownState> flown_;
   bool knows_truth_ = false;
   std::vector<TrackedError> errors_;

@@ -8,19 +8,20 @@
 namespace goshawk::cli {
 namespace {
 
-constexpr const char* kStages[] = {"path_search", "corridor_builder", "trajectory_optimizer",
-                                   "navigator", "tracker"};
+constexpr StageRole kStages[] = {StageRole::path_search, StageRole::corridor_builder,
+                                 StageRole::trajectory_optimizer, StageRole::navigator,
+                                 StageRole::tracker};
 
 Json stages_json(const RequestRecord& record) {
   Json stages = Json::array();
-  for (const char* name : kStages) {
-    const auto found = record.reports.find(name);
+  for (const StageRole stage : kStages) {
+    const auto found = record.reports.find(stage);
     if (found == record.reports.end()) continue;
     const auto& report = found->second;
     Json counters = Json::object();
     for (const auto& counter : report.counters())
       counters[counter.name()] = to_json(counter.value());
-    stages.push_back({{"name", name},
+    stages.push_back({{"name", to_string(stage)},
                       {"implementation", report.implementation()},
                       {"code", report.code()},
                       {"compute_us", double(report.compute_ns()) * 1e-3},

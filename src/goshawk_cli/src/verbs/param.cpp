@@ -11,6 +11,7 @@ namespace goshawk::cli {
 namespace {
 
 using introspection::LiveParameter;
+using introspection::ParameterVerb;
 using introspection::Session;
 using runtime::ParameterDescription;
 using Assignments = std::vector<std::pair<std::string, std::string>>;
@@ -19,8 +20,8 @@ using Assignments = std::vector<std::pair<std::string, std::string>>;
 constexpr double kTimeout_s = 10.0;
 
 struct ParamOptions {
-  std::string node;   // or component
-  Words words;        // names, or names and values
+  std::string node;  // or component
+  Words words;       // names, or names and values
   double timeout_s = kTimeout_s;
 };
 
@@ -54,8 +55,8 @@ void print_description(const ParameterDescription& p) {
 using Tell = std::function<void(const std::string& node, const std::vector<LiveParameter>&)>;
 
 /// Asks a node, and tells what it answers.
-int ask_node(const ParamOptions& o, const std::string& verb, const Assignments& parameters,
-        const Console& console, const Tell& tell) {
+int ask_node(const ParamOptions& o, ParameterVerb verb, const Assignments& parameters,
+             const Console& console, const Tell& tell) {
   const auto name = introspection::full_topic_name(o.node);
   if (!name) {
     return console.wrong_call(
@@ -67,14 +68,14 @@ int ask_node(const ParamOptions& o, const std::string& verb, const Assignments& 
   if (!list) return console.failed(list.error());
   if (!console.json()) {
     tell(*name, *list);
-    if (list->empty() && verb == "get") fmt::print("(no parameters)\n");
+    if (list->empty() && verb == ParameterVerb::get) fmt::print("(no parameters)\n");
     return kDone;
   }
   Json json = {{"ok", true}, {"node", *name}, {"parameters", Json::array()}};
   for (const auto& p : *list) {
     json["parameters"].push_back(parameter_json(p.description));
     json["parameters"].back()["value"] = p.description.value;
-    if (verb == "set") json["parameters"].back()["old_value"] = p.old_value;
+    if (verb == ParameterVerb::set) json["parameters"].back()["old_value"] = p.old_value;
   }
   console.print_line(json);
   return kDone;
@@ -87,12 +88,13 @@ Assignments without_values(const Words& names) {
 }
 
 int get_parameters(const ParamOptions& o, const Console& console) {
-  return ask_node(o, "get", without_values(o.words), console, [&](const auto&, const auto& list) {
-    for (const auto& p : list) {
-      if (o.words.size() != 1) fmt::print("{}: ", p.description.name);
-      fmt::print("{}\n", p.description.value);
-    }
-  });
+  return ask_node(o, ParameterVerb::get, without_values(o.words), console,
+                  [&](const auto&, const auto& list) {
+                    for (const auto& p : list) {
+                      if (o.words.size() != 1) fmt::print("{}: ", p.description.name);
+                      fmt::print("{}\n", p.description.value);
+                    }
+                  });
 }
 
 int list_components(const Console& console) {
@@ -107,7 +109,7 @@ int list_components(const Console& console) {
 
 int list_parameters(const ParamOptions& o, const Console& console) {
   if (o.node.empty()) return list_components(console);
-  return ask_node(o, "get", {}, console, [](const auto&, const auto& list) {
+  return ask_node(o, ParameterVerb::get, {}, console, [](const auto&, const auto& list) {
     std::size_t names = 0, values = 0;
     for (const auto& [d, old] : list) {
       names = std::max(names, d.name.size());
@@ -136,22 +138,24 @@ int set_parameters(const ParamOptions& o, const Console& console) {
   for (std::size_t i = 0; i < o.words.size(); i += 2) {
     wanted.emplace_back(o.words[i], o.words[i + 1]);
   }
-  return ask_node(o, "set", wanted, console, [](const std::string& name, const auto& list) {
-    for (const auto& [d, old] : list) {
-      fmt::print("{}: {} -> {}\n", d.name, shown(d, old), with_unit(shown(d, d.value), d.unit));
-    }
-    fmt::print("holds until the node ends; goshawk param dump {} keeps it\n", name);
-  });
+  return ask_node(
+      o, ParameterVerb::set, wanted, console, [](const std::string& name, const auto& list) {
+        for (const auto& [d, old] : list) {
+          fmt::print("{}: {} -> {}\n", d.name, shown(d, old), with_unit(shown(d, d.value), d.unit));
+        }
+        fmt::print("holds until the node ends; goshawk param dump {} keeps it\n", name);
+      });
 }
 
 /// As a file for --params-file. JSON's quotes are YAML's too.
 int dump_parameters(const ParamOptions& o, const Console& console) {
-  return ask_node(o, "get", {}, console, [](const std::string& name, const auto& list) {
-    fmt::print("{}:\n  ros__parameters:{}\n", name, list.empty() ? " {}" : "");
-    for (const auto& [d, old] : list) {
-      fmt::print("    {}: {}\n", d.name, d.type == "string" ? to_line(Json(d.value)) : d.value);
-    }
-  });
+  return ask_node(
+      o, ParameterVerb::get, {}, console, [](const std::string& name, const auto& list) {
+        fmt::print("{}:\n  ros__parameters:{}\n", name, list.empty() ? " {}" : "");
+        for (const auto& [d, old] : list) {
+          fmt::print("    {}: {}\n", d.name, d.type == "string" ? to_line(Json(d.value)) : d.value);
+        }
+      });
 }
 
 /// Those of `chosen`, or all. @return invalid_parameter for a name that is not there
@@ -193,12 +197,13 @@ int describe_component(const ParamOptions& o, const Console& console) {
 /// A leading '/' names a node that runs; a component is described without one.
 int describe_parameters(const ParamOptions& o, const Console& console) {
   if (!o.node.starts_with('/')) return describe_component(o, console);
-  return ask_node(o, "get", without_values(o.words), console, [](const auto&, const auto& list) {
-    for (const auto& p : list) {
-      print_description(p.description);
-      fmt::print("  now: {}\n", shown(p.description, p.description.value));
-    }
-  });
+  return ask_node(o, ParameterVerb::get, without_values(o.words), console,
+                  [](const auto&, const auto& list) {
+                    for (const auto& p : list) {
+                      print_description(p.description);
+                      fmt::print("  now: {}\n", shown(p.description, p.description.value));
+                    }
+                  });
 }
 
 /// Parameters of the component that a node is probably one of, by its name.
@@ -241,9 +246,9 @@ Words complete_set(const Words& before) {
 struct Description {
   const char* name;
   const char* summary;
-  const char* node;        // what is said of the node
+  const char* node;  // what is said of the node
   bool node_required;
-  const char* words;       // name of what follows, or nullptr
+  const char* words;  // name of what follows, or nullptr
   const char* about_words;
   bool words_required;
   const char* examples;
@@ -272,32 +277,48 @@ void add_param(Program& program) {
   const Verb param = program.verb("param", "parameters: of nodes that run, and of components");
   const char* node = "as goshawk node list shows it";
   const auto names = [](const Words& before) { return parameter_names(before.front(), false); };
-  add_word(param, {"list", "a node's parameters as they are; without a node, the installed components",
-              node, false, nullptr, nullptr, false,
-              "Examples:\n  goshawk param list\n  goshawk param list /navigator", list_parameters, node_names,
-              {}});
-  add_word(param, {"get", "values as they are now", node, true, "name", "of parameters; none: all",
-              false,
-              "Examples:\n  goshawk param get /navigator v_max_m_s\n"
-              "  goshawk param get /uav1/tracker --json",
-              get_parameters, node_names, names});
+  add_word(param, {"list",
+                   "a node's parameters as they are; without a node, the installed components",
+                   node,
+                   false,
+                   nullptr,
+                   nullptr,
+                   false,
+                   "Examples:\n  goshawk param list\n  goshawk param list /navigator",
+                   list_parameters,
+                   node_names,
+                   {}});
+  add_word(param,
+           {"get", "values as they are now", node, true, "name", "of parameters; none: all", false,
+            "Examples:\n  goshawk param get /navigator v_max_m_s\n"
+            "  goshawk param get /uav1/tracker --json",
+            get_parameters, node_names, names});
   add_word(param, {"set", "change a node that runs", node, true, "assignments",
-              "NAME VALUE, and more of them; all are set at once, or none", true,
-              "Examples:\n  goshawk param set /navigator v_max_m_s 1 a_max_m_s2 0.8\n"
-              "  goshawk param set /path_search planner astar\n"
-              "goshawk param describe COMPONENT says what takes effect at run time.",
-              set_parameters, node_names, complete_set});
-  add_word(param, {"describe", "parameters with unit, default, range, and whether they change at run time",
-              "a component, as goshawk run takes it; or /NODE, which runs, with its values", true,
-              "name", "of parameters; none: all", false,
-              "Examples:\n  goshawk param describe tracker\n"
-              "  goshawk param describe path_search planner z_weight\n"
-              "  goshawk param describe /uav1/path_search",
-              describe_parameters, component_names, names});
-  add_word(param, {"dump", "all values, as a file for --params-file", node, true, nullptr, nullptr, false,
-              "Examples:\n  goshawk param dump /navigator > my.yaml\n"
-              "  goshawk launch flight --ros-args --params-file my.yaml",
-              dump_parameters, node_names, {}});
+                   "NAME VALUE, and more of them; all are set at once, or none", true,
+                   "Examples:\n  goshawk param set /navigator v_max_m_s 1 a_max_m_s2 0.8\n"
+                   "  goshawk param set /path_search planner astar\n"
+                   "goshawk param describe COMPONENT says what takes effect at run time.",
+                   set_parameters, node_names, complete_set});
+  add_word(param,
+           {"describe", "parameters with unit, default, range, and whether they change at run time",
+            "a component, as goshawk run takes it; or /NODE, which runs, with its values", true,
+            "name", "of parameters; none: all", false,
+            "Examples:\n  goshawk param describe tracker\n"
+            "  goshawk param describe path_search planner z_weight\n"
+            "  goshawk param describe /uav1/path_search",
+            describe_parameters, component_names, names});
+  add_word(param, {"dump",
+                   "all values, as a file for --params-file",
+                   node,
+                   true,
+                   nullptr,
+                   nullptr,
+                   false,
+                   "Examples:\n  goshawk param dump /navigator > my.yaml\n"
+                   "  goshawk launch flight --ros-args --params-file my.yaml",
+                   dump_parameters,
+                   node_names,
+                   {}});
 }
 
 }  // namespace goshawk::cli

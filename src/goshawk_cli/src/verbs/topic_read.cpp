@@ -30,12 +30,13 @@ struct EchoOptions {
   bool short_arrays = false;
 };
 
-void print_message(Json message, const EchoOptions& o, const Console& console) {
+void print_message(const introspection::Type& type, Json message, const EchoOptions& o,
+                   const Console& console) {
   if (o.short_arrays) introspection::shorten_arrays(message);
   if (console.json()) {
     console.print_line(message);
   } else {
-    fmt::print("{}---\n", introspection::to_yaml(message));
+    fmt::print("{}---\n", introspection::to_yaml(type, message));
     std::fflush(stdout);
   }
 }
@@ -57,7 +58,7 @@ int echo(EchoOptions o, const Console& console) {
   listener.message = [&](const RawMessage& message) {
     auto json = introspection::cdr_to_json(*type, message.bytes);
     if (json) {
-      print_message(*std::move(json), o, console);
+      print_message(*type, *std::move(json), o, console);
     } else {
       console.say(json.error().message);
     }
@@ -134,15 +135,15 @@ void report_bandwidth(const introspection::BandwidthMeter& meter, const Console&
                                {"max_bytes", w.max()},
                                {"window", w.size()}});
   }
-  print_line(fmt::format("{:.1f} KB/s from {} messages  mean: {:.0f} B  min: {:.0f} B  max: {:.0f} B",
-                         meter.bytes_per_s() / 1e3, w.size(), w.mean(), w.min(), w.max()));
+  print_line(
+      fmt::format("{:.1f} KB/s from {} messages  mean: {:.0f} B  min: {:.0f} B  max: {:.0f} B",
+                  meter.bytes_per_s() / 1e3, w.size(), w.mean(), w.min(), w.max()));
 }
 
 CLI::Option* add_topic_name(const Verb& verb, ReadOptions& o) {
   auto* option = verb->add_option("topic", o.topic, "its name")->required();
-  verb.completes(option, [](const Words& before) {
-    return before.empty() ? topic_names(before) : Words();
-  });
+  verb.completes(
+      option, [](const Words& before) { return before.empty() ? topic_names(before) : Words(); });
   return option;
 }
 

@@ -11,7 +11,7 @@ class Context;
 
 namespace goshawk::conformance {
 
-/// One thing that every implementation of a stage owes to the others.
+/// One thing that every implementation of a stage must do.
 struct Item {
   std::string name;  // "echoes the request whole"
   bool passed = false;
@@ -20,7 +20,7 @@ struct Item {
 
 struct Report {
   std::string stage;
-  std::string implementation;  // as the stage calls itself
+  std::string implementation;  // from its reports
   std::vector<Item> items;
   double latency_p50_s = 0.0;  // of answered good requests, from sent to arrived
   double latency_p99_s = 0.0;
@@ -45,8 +45,8 @@ std::vector<std::string> stages();
 
 /// Stands in for all neighbours of the stage: sends a map and requests, good and bad, and examines
 /// every answer. Requests are the same for the same seed.
-/// @return invalid_parameter for a stage that is not known, stage_silent where nobody reads its
-/// input within ready_timeout_s, io_failed or invalid_input where the recording will not do
+/// @return invalid_parameter for an unknown stage, stage_silent if no node reads its input within
+/// ready_timeout_s, io_failed or invalid_input if the recording cannot be used
 Result<Report> conform(runtime::Context& context, const Options& options);
 
 }  // namespace goshawk::conformance

@@ -12,8 +12,8 @@ namespace goshawk::conversions {
 Result<RigidBodyState> from_msg(const nav_msgs::msg::Odometry& m);
 void fill_msg(const RigidBodyState& state, nav_msgs::msg::Odometry& m);
 
-Result<ThrustAttitude> from_msg(const goshawk_msgs::msg::ThrustAttitude& m);
-void fill_msg(const ThrustAttitude& command, goshawk_msgs::msg::ThrustAttitude& m);
+Result<AttitudeSetpoint> from_msg(const goshawk_msgs::msg::AttitudeSetpoint& m);
+void fill_msg(const AttitudeSetpoint& command, goshawk_msgs::msg::AttitudeSetpoint& m);
 
 /// @return invalid_input if it is far from length 1
 Result<Quaternion> from_msg(const geometry_msgs::msg::Quaternion& m);

@@ -25,7 +25,7 @@ struct RigidBodyState {
 
 /// What a tracker asks of a vehicle: collective thrust along the body's z axis, the attitude to
 /// take, and the body rates that go with it (feedforward).
-struct ThrustAttitude {
+struct AttitudeSetpoint {
   double thrust_n = 0.0;                           // [N] >= 0
   Quaternion q_map_base = Quaternion::Identity();  // wanted attitude
   Vec3 angular_velocity_base = Vec3::Zero();       // [rad/s] feedforward

@@ -17,7 +17,8 @@ namespace goshawk::introspection {
 /// @return invalid_input that names field and fault
 Result<nlohmann::ordered_json> cdr_to_json(const Type& type, std::span<const unsigned char> bytes);
 
-/// The way back, little-endian. Fields that the JSON leaves out are zero, empty or false.
+/// The way back, little-endian. Fields that the JSON leaves out are zero, empty or false. A field
+/// with constants also takes the name of one: {"verb": "VERB_SET"}.
 /// @return invalid_input that names the field: unknown (and the nearest known one), of another
 /// type, out of range, or of the wrong number of elements
 Result<std::vector<unsigned char>> json_to_cdr(const Type& type,

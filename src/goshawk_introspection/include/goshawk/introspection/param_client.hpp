@@ -9,23 +9,24 @@
 
 namespace goshawk::introspection {
 
-/// A parameter as a node tells it; with old_value if it was set.
+/// A parameter as a node reports it; old_value after a set.
 struct LiveParameter {
   runtime::ParameterDescription description;
   std::string old_value;
 };
 
-/// What is asked of a node: its verb, and names (get) or names and values (set).
+enum class ParameterVerb { get, set };
+
+/// What is asked of a node: names (get) or names and values (set).
 struct ParameterQuestion {
   std::string node;  // full name
-  std::string verb;  // "get", "set"
+  ParameterVerb verb = ParameterVerb::get;
   std::vector<std::pair<std::string, std::string>> parameters;
 };
 
-/// Asks until the node answers: it does what was asked once, however often it hears it.
-/// @return the node's own refusal as invalid_parameter, or stage_silent: no node of that name
-/// answered within timeout_s, or other nodes are there and none of that name (the sentence tells
-/// which, and the nearest name)
+/// Asks until the node answers; the node carries the request out once, however often it arrives.
+/// @return the node's own error, or stage_silent: no such node answered within timeout_s. The
+/// sentence lists the nodes that are there, or names the nearest one
 Result<std::vector<LiveParameter>> ask(Session& session, const ParameterQuestion& question,
                                        double timeout_s);
 

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "goshawk/core/result.hpp"
+#include "goshawk/introspection/schema.hpp"
 
 namespace goshawk::introspection {
 
@@ -11,8 +12,10 @@ namespace goshawk::introspection {
 /// @return invalid_input if it is neither
 Result<nlohmann::ordered_json> parse_json_or_yaml(const std::string& text);
 
-/// As `ros2 topic echo` shows it: block style, lists of numbers in one line.
-std::string to_yaml(const nlohmann::ordered_json& json);
+/// A message as `ros2 topic echo` shows it: block style, lists of numbers in one line. The name of
+/// a constant stands behind its value as a comment: `state: 3  # STATE_ARRIVED`.
+/// @param json of that type, as cdr_to_json() makes it
+std::string to_yaml(const Type& type, const nlohmann::ordered_json& json);
 
 /// One line; bytes that are not UTF-8 are replaced.
 std::string to_line(const nlohmann::ordered_json& json);

@@ -8,6 +8,7 @@
 
 #include "goshawk/core/committed_trajectory.hpp"
 #include "goshawk/core/plan_request.hpp"
+#include "goshawk/core/stage_role.hpp"
 #include "goshawk/core/vehicle.hpp"
 #include "goshawk/navigator/config.hpp"
 
@@ -19,7 +20,8 @@ std::string_view to_string(State state);
 /// What the navigator tells everyone.
 struct StateOrder {
   State state = State::idle;
-  std::uint64_t id = 0;
+  std::uint64_t id = 0;        // of the newest request, 0 before any
+  std::uint64_t flown_id = 0;  // of the trajectory that is flown or held at its end; 0: none
   Vec3 goal_map = Vec3::Zero();
   Error reason{ErrorCode::ok, ""};
 };
@@ -50,8 +52,7 @@ class Navigator {
   /// @param candidate without start time and yaw, which are set here
   void on_trajectory(Commitment candidate, std::int64_t now_ns);
   /// A stage has answered a request: with ok, or with why not.
-  void on_report(std::uint64_t id, std::string_view stage, const Error& outcome,
-                 std::int64_t now_ns);
+  void on_report(std::uint64_t id, StageRole stage, const Error& outcome, std::int64_t now_ns);
   /// Regularly, some 50 times a second: timeouts and arrival.
   void tick(std::int64_t now_ns);
 
@@ -66,8 +67,8 @@ class Navigator {
   struct Open {  // the request that waits for its answer
     std::uint64_t id = 0;
     std::int64_t asked_ns = 0;
-    std::optional<std::int64_t> switch_ns;  // moving start: when the new trajectory must begin
-    std::string last_stage;                 // that answered ok
+    std::optional<std::int64_t> switch_ns;    // moving start: when the new trajectory must begin
+    StageRole last_stage = StageRole::other;  // that answered ok
   };
   struct Flight {
     CommittedTrajectory committed;
@@ -97,6 +98,7 @@ class Navigator {
 
   Config config_;
   std::uint64_t next_id_;
+  std::uint64_t newest_id_ = 0;  // of the newest request
   State state_ = State::idle;
   Goal goal_;
   bool goal_open_ = false;  // a goal that no committed trajectory leads to yet

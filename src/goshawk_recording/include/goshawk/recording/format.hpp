@@ -15,9 +15,9 @@ using Bytes = std::vector<unsigned char>;
 using View = std::span<const unsigned char>;
 
 struct Schema {
-  std::uint16_t id = 0;       // 0 is none: a channel of no schema
+  std::uint16_t id = 0;       // 0: a channel without a schema
   std::string name = {};      // "goshawk_msgs/msg/Path"
-  std::string encoding = {};  // "ros2msg"; empty where no definition is known
+  std::string encoding = {};  // "ros2msg"; empty: the definition is not known
   std::string data = {};      // the definition
 
   bool operator==(const Schema&) const = default;
@@ -33,7 +33,7 @@ struct Channel {
   bool operator==(const Channel&) const = default;
 };
 
-/// A message whose bytes belong to somebody else.
+/// A message whose bytes are owned elsewhere.
 struct MessageView {
   std::uint16_t channel_id = 0;
   std::uint32_t sequence = 0;

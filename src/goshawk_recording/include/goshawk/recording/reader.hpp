@@ -17,12 +17,12 @@ struct ReadOptions {
   std::optional<std::set<std::uint16_t>> channels = {};  // none: all
 };
 
-/// Reads MCAP files, ours and others' (chunks of zstd or none). The bytes may be anybody's: a
-/// length is believed only as far as the file goes, an index never. A file that ends in the middle
-/// gives what is whole in it, and complaints() says so.
+/// Reads MCAP files of any writer (chunks of zstd or none). The bytes are not trusted: a length
+/// counts only as far as the file goes, an index never. A file that is cut off gives everything
+/// that is whole in it; complaints() tell.
 class Reader {
  public:
-  /// @return io_failed where the file cannot be read, invalid_input where it is no MCAP file
+  /// @return io_failed if the file cannot be read, invalid_input if it is not an MCAP file
   static Result<Reader> open(const std::string& path);
   ~Reader();
   Reader(Reader&&) noexcept;
@@ -35,16 +35,16 @@ class Reader {
   const Schema* schema_of(const Channel& channel) const;
   std::uint64_t message_count() const;
   std::uint64_t message_count(std::uint16_t channel_id) const;
-  std::uint64_t start_ns() const;  // log time of the first message; 0 where there is none
+  std::uint64_t start_ns() const;  // log time of the first message; 0: there is none
   std::uint64_t end_ns() const;
 
-  /// What is wrong with the file, a sentence each; empty for a whole one.
+  /// What is wrong with the file, one sentence each; empty for a whole file.
   const std::vector<std::string>& complaints() const;
 
-  /// Gives messages in the order of their log times, equal ones in the file's.
+  /// Gives messages in the order of their log times; equal ones in the order of the file.
   /// @param take the view ends with the call; @return false to end
-  /// @return io_failed where the file cannot be read any more. Damaged chunks are left out, and
-  /// are complaints.
+  /// @return io_failed if the file can no longer be read. Damaged chunks are skipped and become
+  /// complaints.
   Status read(const ReadOptions& options, const std::function<bool(const MessageView&)>& take);
 
  private:

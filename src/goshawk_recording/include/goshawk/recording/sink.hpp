@@ -7,20 +7,20 @@
 
 namespace goshawk::recording {
 
-/// Where a recording goes: bytes at the end, and room for more kept ready.
+/// Where a recording is written: bytes are appended, and room for more can be reserved.
 class Sink {
  public:
   virtual ~Sink() = default;
-  /// @return io_failed that says why; a part of the bytes may be there then
+  /// @return io_failed; a part of the bytes may have been written
   virtual Status append(View bytes) = 0;
-  /// Makes sure that `size` more bytes will fit. @return io_failed where they will not; success
-  /// where that cannot be known
+  /// Makes sure that `size` more bytes will fit. @return io_failed if they will not; success if
+  /// that cannot be known
   virtual Status reserve(std::uint64_t size) = 0;
-  /// Drops whatever lies behind the first `size` bytes.
+  /// Drops everything after the first `size` bytes.
   virtual Status cut(std::uint64_t size) = 0;
 };
 
-/// A new file. What append() took is the kernel's, so that it outlives this process' kill -9.
+/// A new file. What append() took is in the kernel, so it survives kill -9 of this process.
 /// @return io_failed: the folder cannot be written, or the file exists and may not be replaced
 Result<std::unique_ptr<Sink>> create_file(const std::string& path, bool overwrite = false);
 

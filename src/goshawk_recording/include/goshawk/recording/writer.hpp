@@ -13,24 +13,24 @@ namespace goshawk::recording {
 struct WriterOptions {
   std::string profile = "ros2";
   std::string library = "goshawk";
-  std::size_t chunk_bytes = 1 << 20;  // [byte] of messages until a chunk is closed by itself
+  std::size_t chunk_bytes = 1 << 20;  // [byte] of messages after which a chunk is closed
   int compression_level = 1;          // of zstd; 0: not compressed
 };
 
 struct WriterCounts {
   std::uint64_t messages = 0;  // in the file
-  std::uint64_t lost = 0;      // taken, but not in the file: it could not be written
+  std::uint64_t lost = 0;      // taken, but could not be written
   std::uint64_t bytes = 0;     // [byte] of the file
 };
 
 /// Writes an MCAP file: chunks compressed with zstd, each followed by its message indices, and at
 /// the end a summary with the chunk indices. After flush() every message so far is in the file,
-/// and a reader gets it though the summary never comes.
+/// and a reader finds it even if the summary is never written.
 ///
 /// Room for the summary is reserved before each chunk, so that a full disk leaves a whole file.
 class Writer {
  public:
-  /// @return io_failed where the sink does not even take the first bytes
+  /// @return io_failed if the sink does not take the first bytes
   static Result<Writer> create(std::unique_ptr<Sink> sink, const WriterOptions& options = {});
   ~Writer();
   Writer(Writer&&) noexcept;
@@ -42,15 +42,15 @@ class Writer {
   /// @return the new channel's id. @throws std::length_error, std::invalid_argument
   std::uint16_t add_channel(Channel channel);
 
-  /// @return io_failed once the sink has failed: nothing more is taken then
+  /// @return io_failed once the sink has failed: no more messages are taken then
   /// @throws std::invalid_argument for a channel that was never added
   Status write(const MessageView& message);
 
-  /// Closes the chunk: what was written is in the sink.
+  /// Closes the chunk: everything written so far is in the sink.
   Status flush();
 
-  /// Flushes, and writes the summary. After a failure of the sink what was whole before is kept
-  /// and closed. @return the first failure, if there was one
+  /// Flushes and writes the summary. After a failure of the sink, everything that was whole before
+  /// is kept and closed. @return the first failure, if there was one
   Status close();
 
   WriterCounts counts() const;

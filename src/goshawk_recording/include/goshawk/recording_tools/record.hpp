@@ -9,7 +9,7 @@
 
 namespace goshawk::recording {
 
-/// Hears sentences on what happens.
+/// Takes sentences about what happens.
 using Say = std::function<void(const std::string& sentence)>;
 
 struct RecordOptions {

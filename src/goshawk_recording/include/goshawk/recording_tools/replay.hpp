@@ -10,7 +10,7 @@
 namespace goshawk::recording {
 
 struct ReplayOptions {
-  std::string file;                    // stands in sentences
+  std::string file;                    // for sentences
   std::vector<std::string> topics;     // names, or beginnings like /uav1/*; none: all
   double rate = 1.0;                   // times as fast as it was
   double start_offset_s = 0.0;         // from the first message of the recording
@@ -39,7 +39,7 @@ double duration_s(const Reader& reader);
 
 /// Channels of the chosen topics that DDS can carry.
 /// @return invalid_parameter for a name that is wrong, or a node whose turns were not recorded;
-/// invalid_input if nothing is left
+/// invalid_input if nothing is left, or if another version recorded a topic with another layout
 Result<std::set<std::uint16_t>> choose_channels(const Reader& reader, const ReplayOptions& options,
                                                 const Say& say);
 

@@ -21,8 +21,8 @@ struct ComponentExport {
   std::vector<ParameterDescription> (*describe)();
 };
 
-/// Loads libgoshawk_NAME_component.so from beside this library, or from where the loader looks.
-/// @return invalid_parameter that names the components that are there
+/// Loads libgoshawk_NAME_component.so from this library's folder, GOSHAWK_COMPONENT_PATH or
+/// LD_LIBRARY_PATH. @return invalid_parameter that lists the installed components
 Result<const ComponentExport*> load_component(const std::string& name);
 
 /// @return names of all installed components, sorted

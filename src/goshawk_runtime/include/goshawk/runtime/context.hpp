@@ -21,8 +21,9 @@ struct ContextOptions {
   /// called by Fast DDS' threads, several at once.
   std::function<void(std::span<const std::byte> datagram, bool sent)> tap{};
 
-  /// ROS_DOMAIN_ID and GOSHAWK_INTERFACES, where they are set.
-  /// @return invalid_parameter for a domain that is no number from 0 to 232
+  /// ROS_DOMAIN_ID and GOSHAWK_INTERFACES, if they are set.
+  /// @return invalid_parameter for a domain that is not a number from 0 to 232, or for empty
+  /// interfaces
   static Result<ContextOptions> from_environment();
 };
 
@@ -39,7 +40,7 @@ struct ParticipantInfo {
   std::string guid_prefix;
   std::string name;
   std::vector<std::string> nodes;
-  std::string version = "";  // of Goshawk; empty: another program, or one that does not tell
+  std::string version = "";  // of Goshawk; empty: another program, or one that does not say
 };
 
 /// One DDS participant: a process' membership in a domain.
@@ -52,8 +53,8 @@ class Context {
  public:
   struct Impl;
 
-  /// @return invalid_parameter for a domain or an interface that is not there, io_failed with a
-  /// sentence where the domain cannot be joined
+  /// @return invalid_parameter for a domain or an interface that does not exist, io_failed if the
+  /// domain cannot be joined
   static Result<std::unique_ptr<Context>> create(const ContextOptions& options);
   ~Context();
 

@@ -15,26 +15,25 @@ struct ParameterChange {
   std::string value;
 };
 
-/// The parameters of a node that runs (docs/adr/0008-parameters-at-run-time.md).
+/// The parameters of a running node (docs/adr/0008-parameters-at-run-time.md).
 class LiveParameters {
  public:
   virtual ~LiveParameters() = default;
 
-  /// As they are now; at_run_time only where set() can change them.
+  /// Current values; at_run_time only if set() can change them.
   virtual std::vector<ParameterDescription> list() const = 0;
 
-  /// All that is wanted or, where anything is wrong with it, nothing.
-  /// @return what was asked for, before and after; invalid_parameter that lists every fault: an
-  /// unknown name, a wrong type, a value out of range, one that holds from start to end, or what
-  /// the component itself cannot do
+  /// Sets all of the wanted values or, if anything is wrong with one, none.
+  /// @return old and new values; invalid_parameter that lists every fault: an unknown name, a wrong
+  /// type, a value out of range, a parameter that is fixed at start, or the component's own refusal
   virtual Result<std::vector<ParameterChange>> set(const ParameterSource& wanted) = 0;
 };
 
-/// Those of a config struct, and the component that lives by it.
+/// The parameters of a config struct and the component that uses it.
 template <typename Config>
 class LiveConfig final : public LiveParameters {
  public:
-  /// Takes a whole config on, or says why not and stays as it was.
+  /// Adopts a whole config, or refuses it and changes nothing.
   using Reconfigure = std::function<Status(const Config&)>;
 
   /// @param reconfigure empty: nothing can be changed

@@ -6,8 +6,8 @@
 
 namespace goshawk::runtime {
 
-/// A message type as the middleware sees it; what is inside stays out of this header, because
-/// Fast DDS' headers cost seconds a file.
+/// A message type as the middleware sees it. Fast DDS' headers stay out of this one: they take
+/// seconds to compile.
 class MessageType {
  public:
   struct Impl;
@@ -31,8 +31,8 @@ const MessageType& message_type();
 MessageType raw_message_type(const std::string& wire_name);
 
 /// The CDR bytes (encapsulation included) of a message, and back.
-/// decode @return false where the bytes are not such a message; never throws, and never claims
-/// more memory than a small multiple of the bytes.
+/// decode @return false if the bytes are not such a message. It never throws and never takes more
+/// memory than a small multiple of the bytes.
 std::vector<unsigned char> encode(const MessageType& type, const void* message);
 bool decode(const MessageType& type, const std::vector<unsigned char>& bytes, void* message);
 

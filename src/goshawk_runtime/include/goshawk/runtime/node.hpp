@@ -47,9 +47,9 @@ class RawPublisher {
  public:
   RawPublisher() = default;
   explicit RawPublisher(std::shared_ptr<detail::Writer> writer) : writer_(std::move(writer)) {}
-  /// @return io_failed where the middleware did not take the message
+  /// @return io_failed if the middleware did not take the message
   Status publish_raw(const void* message) const;
-  /// Readers that claim to listen. No proof that they do (fastdds.md), good enough to wait for.
+  /// Readers that discovery has matched: good enough to wait for, no proof that they listen.
   int matched() const;
   /// @return whether every reliable reader that is matched has the messages, within timeout_s
   bool wait_acknowledged(double timeout_s) const;
@@ -84,11 +84,11 @@ class Node {
   std::int64_t monotonic_ns() const;
   spdlog::logger& log() { return *log_; }
 
-  /// Also turns to simulated time or lock step, where the user asks for it; and from here on the
-  /// node answers on /parameter_answer what is asked of it on /parameter_request.
-  /// @param reconfigure called between two callbacks with a config that differs in what is marked
-  /// AtRunTime, is in range, and is to be taken on whole or refused with a sentence. Without it
-  /// nothing can change at run time
+  /// Also switches to simulated time or lock step if the user asks for it. From here on the node
+  /// answers requests on /parameter_request.
+  /// @param reconfigure called between two callbacks with a config that differs only in parameters
+  /// marked AtRunTime and is in range: it adopts the whole config or refuses it. Without it no
+  /// parameter can change at run time
   /// @throws StartupFault that lists every fault
   template <typename Config>
   Config parameters(std::function<Status(const Config&)> reconfigure = {}) {
@@ -108,10 +108,10 @@ class Node {
 
   /// From here on now_ns() and timers follow /clock; 0 before the first message on it.
   void use_simulated_time();
-  /// From here on the node runs in turns that a leader gives it; @see LockStep.
+  /// From here on the node runs only in the turns that a leader gives it; @see LockStep.
   void run_in_lock_step();
   /// From here on spin() makes simulated time, step by step, for the followers. Before the first
-  /// step every follower must have answered. One that falls silent is waited for.
+  /// step every follower must have answered. The leader waits for one that falls silent.
   void lead_lock_step(const LockStep& lock_step);
 
   template <typename Message>
@@ -138,6 +138,10 @@ class Node {
   /// Calls back every period_s from now on, by the machine's steady clock or by simulated time; a
   /// call that comes late is not made up for.
   void every(double period_s, std::function<void()> callback);
+
+  /// Calls back once, in the node's thread, after the messages that are already here were served:
+  /// for work that should see the newest of them first. Call it from a callback.
+  void later(std::function<void()> callback);
 
   /// Serves callbacks until stop(). An exception in a callback is a bug: it is logged with the
   /// topic's name, and ends the process, so that supervision restarts it.

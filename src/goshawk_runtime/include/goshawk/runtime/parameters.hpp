@@ -20,16 +20,16 @@ class ParameterSource {
     std::string text;     // as written
     std::string origin;   // file or option that set it, for the sentence of a fault
     bool quoted = false;  // a quoted YAML scalar is a string, even when it looks like a number
-    std::string fault;    // why it cannot be a value at all; empty: it can
+    std::string fault;    // why it cannot be a value; empty: it can
   };
 
-  /// Adds the sections of a ROS style file that are meant for this node: `/**`, the node's name
+  /// Adds the sections of a ROS style file that apply to this node: `/**`, the node's name
   /// and its full name (`/uav1/path_search`), each with a map `ros__parameters`.
-  /// @return io_failed where the file cannot be read, invalid_parameter where its form is wrong
+  /// @return io_failed if the file cannot be read, invalid_parameter if its form is wrong
   Status add_file(const std::string& path, std::string_view node_name,
                   std::string_view node_namespace);
 
-  /// One value as a user writes it behind `name:=`; in quotes it is a string in any case.
+  /// One value as a user writes it after `name:=`; in quotes it is always a string.
   static Entry written(const std::string& value, const std::string& origin);
 
   void set(const std::string& name, Entry entry) { entries_[name] = std::move(entry); }
@@ -39,7 +39,7 @@ class ParameterSource {
   std::map<std::string, Entry> entries_;
 };
 
-/// A section for a node that nobody knows is a typing error, and its parameters would be lost.
+/// A section for an unknown node is a typing error whose parameters would be ignored silently.
 /// @param known names of nodes, without namespace
 /// @return invalid_parameter that names each such section and the nearest name; io_failed
 Status check_sections(const std::string& params_file, const std::vector<std::string>& known);
@@ -48,10 +48,10 @@ Status check_sections(const std::string& params_file, const std::vector<std::str
 struct ParameterDescription {
   std::string name;
   std::string type;  // "bool", "int", "double", "string"
-  std::string unit;  // empty where it has none
+  std::string unit;  // empty: none
   std::string text;
   std::string default_value;
-  std::string range;         // in words, empty where anything goes
+  std::string range;         // in words; empty: any value
   std::string value;         // of the struct that was described
   bool at_run_time = false;  // may change while the node runs
 };
@@ -61,7 +61,7 @@ std::string nearest_name(std::string_view wrong, const std::vector<std::string>&
 
 namespace detail {
 
-/// Reads one value, and says in a sentence what is wrong with it (empty: nothing).
+/// Reads one value. @return what is wrong with it (empty: nothing)
 std::string parse(const ParameterSource::Entry& entry, bool& value);
 std::string parse(const ParameterSource::Entry& entry, int& value);
 std::string parse(const ParameterSource::Entry& entry, double& value);
@@ -113,7 +113,7 @@ std::string range_of(const Allowed& allowed) {
 /// Which parameters may be given: all at start, those AtRunTime later, or none any more.
 enum class Changeable { at_start, at_run_time, no };
 
-/// Collects every fault of a node's parameters before anything is said.
+/// Collects all faults of a node's parameters, to report them together.
 class Reader {
  public:
   explicit Reader(const ParameterSource& source, Changeable changeable = Changeable::at_start)
@@ -165,7 +165,7 @@ constexpr const char* type_name() {
 
 }  // namespace detail
 
-/// What every node has beside its own parameters.
+/// Parameters that every node has besides its own.
 struct TimeParameters {
   bool use_sim_time = false;  // now and timers follow /clock, as in ROS
   bool lock_step = false;     // the node runs in turns: its plant names it in lock_step_nodes
@@ -173,8 +173,8 @@ struct TimeParameters {
 
 /// Fills a config struct, strictly: an unknown name, a wrong type or a value out of range is a
 /// fault, and the error (invalid_parameter) lists all of them, one a line.
-/// @param time where the parameters of every node go, if they are wanted
-/// @param config what holds where the source says nothing
+/// @param time takes the parameters that every node has; may be null
+/// @param config values of the parameters that the source does not set
 template <typename Config>
 Result<Config> read_parameters(const ParameterSource& source, std::string_view node_name,
                                TimeParameters* time = nullptr, Config config = {},
@@ -189,7 +189,7 @@ Result<Config> read_parameters(const ParameterSource& source, std::string_view n
   return config;
 }
 
-/// @param config whose values are told beside the defaults
+/// @param config its values are listed beside the defaults
 template <typename Config>
 std::vector<ParameterDescription> describe_parameters(const Config& config) {
   std::vector<ParameterDescription> list;

@@ -10,7 +10,7 @@
 
 namespace goshawk::runtime {
 
-/// What stands behind `--ros-args`, as ROS 2 users know it:
+/// The arguments after `--ros-args`, as ROS 2 users know them:
 ///   -r from:=to           remap a topic (`-r node:from:=to` for one node of several);
 ///                         __ns:=/uav1 the namespace, __node:=name the node
 ///   -p name:=value        one parameter (`-p node:name:=value` for one node of several)
@@ -43,11 +43,11 @@ struct RosArgs {
   Result<ParameterSource> parameters_of(std::string_view name) const;
 
   /// A topic's full name: remapped, then put under the namespace unless it begins with '/'.
-  /// @param node whose topic it is: what is remapped for others does not count
+  /// @param node that uses the topic: remappings for other nodes do not apply
   std::string resolve_topic(std::string_view topic, std::string_view node = {}) const;
 };
 
-/// @return invalid_input unless the name is of letters, digits, '_' and '/', as ROS demands
+/// @return invalid_input unless the name consists of letters, digits, '_' and '/', as in ROS
 Status check_topic_name(std::string_view topic);
 
 }  // namespace goshawk::runtime

@@ -26,13 +26,20 @@ enum class Kind : std::uint8_t {
 
 enum class Arity : std::uint8_t { single, array, sequence };
 
+/// A value of a field that has a name: {"STATE_IDLE", 0}.
+struct Constant {
+  std::string_view name;
+  std::uint64_t value;
+};
+
 struct Field {
   std::string_view name;
   Kind kind;
   Arity arity;
-  std::uint32_t size;        // elements of an array, else 1
-  int type;                  // of a structure: index into types(), else -1
-  std::string_view comment;  // unit and meaning, as idl/ has them
+  std::uint32_t size;                   // elements of an array, else 1
+  int type;                             // of a structure: index into types(), else -1
+  std::string_view comment;             // unit and meaning, as in idl/
+  std::span<const Constant> constants;  // names of its values, if it is an enumeration
 };
 
 struct Type {

@@ -20,6 +20,6 @@ struct AttitudeGains {
 /// bounded and smooth up to half a turn (Lee, Leok, McClamroch 2010; Brescianini et al. 2013).
 /// @pre state and wanted are finite, quaternions of unit length
 Wrench attitude_control(const AttitudeGains& gains, const Eigen::Matrix3d& inertia_kg_m2,
-                        const RigidBodyState& state, const ThrustAttitude& wanted);
+                        const RigidBodyState& state, const AttitudeSetpoint& wanted);
 
 }  // namespace goshawk::simulator

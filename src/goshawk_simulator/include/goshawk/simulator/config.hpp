@@ -35,15 +35,18 @@ void describe(Self& s, Visitor&& visit) {
   visit("position_noise_m", s.position_noise_m, "m",
         "odometry: standard deviation of the white noise on each axis of the position",
         Range{0.0, 10.0});
-  visit("velocity_noise_m_s", s.velocity_noise_m_s, "m/s", "odometry: likewise of the velocity",
+  visit("velocity_noise_m_s", s.velocity_noise_m_s, "m/s",
+        "odometry: standard deviation of the white noise on each axis of the velocity",
         Range{0.0, 10.0});
   visit("attitude_noise_rad", s.attitude_noise_rad, "rad",
-        "odometry: likewise of the attitude, about each body axis", Range{0.0, 0.5});
+        "odometry: standard deviation of the white noise of the attitude, about each body axis",
+        Range{0.0, 0.5});
   visit("body_rate_noise_rad_s", s.body_rate_noise_rad_s, "rad/s",
-        "odometry: likewise of the body rates", Range{0.0, 10.0});
+        "odometry: standard deviation of the white noise of the body rates", Range{0.0, 10.0});
   visit("odometry_delay_s", s.delay_s, "s",
-        "how old odometry is when it is published; its stamp says so", Range{0.0, 1.0});
-  visit("sensor_seed", s.seed, "", "the same seed, the same noise", Range{0.0, 2147483647.0});
+        "age of odometry when it is published; its stamp is the true time", Range{0.0, 1.0});
+  visit("sensor_seed", s.seed, "", "seed of the noise: the same seed gives the same noise",
+        Range{0.0, 2147483647.0});
 }
 
 template <typename Self, typename Visitor>
@@ -66,19 +69,19 @@ void describe(Self& c, Visitor&& visit) {
   describe(c.vehicle, visit);
   describe(c.attitude, visit);
   visit("command_timeout_s", c.command_timeout_s, "s",
-        "without a command for this long, the vehicle brakes and holds its position by itself",
+        "without a command for this long, the failsafe brakes and holds the position",
         Range{0.01, 10.0});
-  visit("failsafe_tilt_rad", c.failsafe_tilt_rad, "rad", "steepest tilt of that braking",
+  visit("failsafe_tilt_rad", c.failsafe_tilt_rad, "rad", "steepest tilt while the failsafe brakes",
         Range{0.05, 1.2});
   visit("failsafe_hold_s", c.failsafe_hold_s, "s",
-        "how long it holds, still without commands, before it lands by itself", Range{0.0, 3600.0});
+        "how long the failsafe holds, still without commands, before it lands", Range{0.0, 3600.0});
   visit("landing", c.landing, "",
         "it lands where the map shows the way straight down free (map), as if it were free "
         "everywhere (anywhere), or never",
         Anything{});
-  visit("land_speed_m_s", c.land_speed_m_s, "m/s", "its descent", Range{0.05, 2.0});
+  visit("land_speed_m_s", c.land_speed_m_s, "m/s", "speed of that descent", Range{0.05, 2.0});
   visit("land_height_m", c.land_height_m, "m",
-        "height in the map at which a landing ends: the ground, plus the legs", Anything{});
+        "map height at which a landing ends: the ground plus the legs", Anything{});
   describe(c.sensor, visit);
   visit("wind_x_m_s", c.wind_x_m_s, "m/s", "constant wind towards map x", AtRunTime{wind});
   visit("wind_y_m_s", c.wind_y_m_s, "m/s", "constant wind towards map y", AtRunTime{wind});
@@ -86,7 +89,8 @@ void describe(Self& c, Visitor&& visit) {
   visit("gust_deviation_m_s", c.gust_deviation_m_s, "m/s",
         "standard deviation of the gusts on each axis; 0 for none", AtRunTime{Range{0.0, 10.0}});
   visit("gust_time_s", c.gust_time_s, "s", "correlation time of the gusts", Range{0.01, 100.0});
-  visit("gust_seed", c.gust_seed, "", "the same seed, the same gusts", Range{0.0, 2147483647.0});
+  visit("gust_seed", c.gust_seed, "", "seed of the gusts: the same seed gives the same gusts",
+        Range{0.0, 2147483647.0});
 }
 
 /// @return invalid_parameter with every fault of the configuration, the vehicle's physics included

@@ -4,14 +4,14 @@
 
 namespace goshawk::simulator {
 
-/// What the four rotors do together to the body. Frame `base_link`.
+/// Force and torque of the four rotors on the body. Frame `base_link`.
 struct Wrench {
   double thrust_n = 0.0;  // along z
   Vec3 torque_base_nm = Vec3::Zero();
 };
 
-/// Between the four rotor thrusts and the wrench. Rotor order: front left, rear left, rear right,
-/// front right; neighbours turn in opposite senses.
+/// Converts between the four rotor thrusts and the wrench. Rotor order: front left, rear left, rear
+/// right, front right; neighbours turn in opposite senses.
 class Mixer {
  public:
   /// @pre parameters.check() ok
@@ -19,10 +19,10 @@ class Mixer {
 
   Wrench wrench(const Vec4& rotor_thrust_n) const;
 
-  /// Rotor thrusts in [0, max_motor_thrust_n] that give the wanted wrench where the motors can.
-  /// Where they cannot, roll and pitch torque come first (without them the vehicle tumbles), then
-  /// collective thrust, then yaw torque, for which thrust gives way by at most a tenth of a
-  /// motor's maximum. After Faessler, Falanga, Scaramuzza 2017 (RA-L), section on saturation.
+  /// Rotor thrusts in [0, max_motor_thrust_n] that give the wanted wrench if the motors can. If
+  /// they cannot, roll and pitch torque come first (without them the vehicle tumbles), then
+  /// collective thrust, then yaw torque, which may reduce thrust by at most a tenth of a motor's
+  /// maximum. After Faessler, Falanga, Scaramuzza 2017 (RA-L), section on saturation.
   /// @pre wanted is finite
   Vec4 allocate(const Wrench& wanted) const;
 

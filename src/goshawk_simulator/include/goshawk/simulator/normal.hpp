@@ -15,7 +15,7 @@ inline double normal(Random& random) {
 
 inline Vec3 normal_vector(Random& random, double deviation) {
   Vec3 v;
-  // One by one: the order in which arguments are evaluated is the compiler's choice.
+  // One statement each: the order in which arguments are evaluated is unspecified.
   for (int i = 0; i < 3; ++i) v[i] = deviation * normal(random);
   return v;
 }

@@ -5,31 +5,31 @@
 
 namespace goshawk::simulator {
 
-/// What an autopilot does on its own when offboard control is lost: brake, then hover where the
-/// vehicle came to rest, with the yaw it had. Braking is as hard as max_tilt_rad and the motors
+/// What an autopilot does when offboard control is lost: it brakes, then hovers where the vehicle
+/// came to rest, with the yaw it had. Braking is as hard as max_tilt_rad and the motors
 /// allow (a margin of thrust is kept for attitude control).
 class PositionHold {
  public:
   /// @pre parameters.check() ok; 0 < max_tilt_rad < pi/2
   PositionHold(const plant::VehicleParameters& parameters, double max_tilt_rad);
 
-  /// Brake from here on; hover wherever that ends.
+  /// Brakes from here on, then hovers where that ends.
   void engage(const RigidBodyState& state);
-  /// Hover at this very point.
+  /// Hovers at this point.
   void engage_at(const Vec3& position_map, double yaw_rad);
 
-  /// Moves the place where it hovers down by step_m, to floor_map_m at the lowest.
+  /// Lowers the point of hover by step_m, but not below floor_map_m.
   void lower(double step_m, double floor_map_m);
 
   /// @param disturbance_map [m/s^2] what wind and drag do to the vehicle; compensated
-  ThrustAttitude step(const RigidBodyState& state, const Vec3& disturbance_map = Vec3::Zero());
+  AttitudeSetpoint step(const RigidBodyState& state, const Vec3& disturbance_map = Vec3::Zero());
 
   bool braking() const { return braking_; }
-  /// [m] where it hovers; only the place of engagement while braking
+  /// [m] point of hover; while braking, the place of engagement
   const Vec3& position_map() const { return position_map_; }
 
  private:
-  ThrustAttitude thrust_along(const Vec3& acceleration_map) const;
+  AttitudeSetpoint thrust_along(const Vec3& acceleration_map) const;
 
   double mass_kg_;
   double max_thrust_n_;

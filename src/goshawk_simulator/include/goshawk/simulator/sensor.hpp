@@ -8,14 +8,14 @@
 
 namespace goshawk::simulator {
 
-/// What the vehicle's estimator says of the state: late, and with white noise on every part. All
-/// zero: the truth at once. The same seed, the same noise.
+/// Errors of the vehicle's state estimate: a delay, and white noise on every part. All zero: the
+/// estimate is the truth. The same seed gives the same noise.
 struct SensorParameters {
   double position_noise_m = 0.0;    // standard deviation on each axis, >= 0; so are all
   double velocity_noise_m_s = 0.0;  // map
   double attitude_noise_rad = 0.0;  // about each body axis
   double body_rate_noise_rad_s = 0.0;
-  double delay_s = 0.0;  // of the newest estimate; its stamp tells its true age
+  double delay_s = 0.0;  // of the newest estimate; its stamp is its true time
   int seed = 1;
 
   bool is_perfect() const {
@@ -34,7 +34,7 @@ class Sensor {
   /// @param step_ns the fixed time between calls of record(), > 0
   Sensor(const SensorParameters& parameters, std::int64_t step_ns);
 
-  /// Forgets what was, and begins with this state as if it had always been.
+  /// Starts over with this state, as if it had always been.
   void reset(const RigidBodyState& state, std::int64_t time_ns);
   void record(const RigidBodyState& state, std::int64_t time_ns);
 
@@ -44,7 +44,7 @@ class Sensor {
  private:
   SensorParameters parameters_;
   Random random_;
-  std::vector<Measurement> ring_;  // as many as the delay has steps, and one
+  std::vector<Measurement> ring_;  // one more than the delay has steps
   std::size_t oldest_ = 0;
 };
 

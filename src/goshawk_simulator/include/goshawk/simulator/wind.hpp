@@ -6,7 +6,7 @@
 namespace goshawk::simulator {
 
 /// A constant wind with gusts on top: on each axis a first-order Gauss-Markov process, as the
-/// Dryden model reduces to at low height and speed. Frame `map`. The same seed, the same wind.
+/// Dryden model reduces to at low height and speed. Frame `map`. The same seed gives the same wind.
 class Wind {
  public:
   struct Parameters {
@@ -20,7 +20,7 @@ class Wind {
   Wind(const Parameters& parameters, double step_s);
 
   void step();
-  /// From the next step on; gusts grow or die down to the new deviation with their own time.
+  /// Takes effect with the next step; gusts approach the new deviation with their correlation time.
   void change(const Vec3& mean_map, double gust_deviation_m_s) {
     mean_map_ = mean_map;
     deviation_m_s_ = gust_deviation_m_s;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -15,7 +17,8 @@
 namespace goshawk::stage {
 
 /// The component of a simulated plant: command -> odom, vehicle_status, /tf, in real time (by the
-/// monotonic clock; stamps are the wall clock's) or as the clock of nodes in lock step. With sensor noise or delay, `odom_true` has the truth.
+/// monotonic clock; stamps are the wall clock's) or as the clock of nodes in lock step. With sensor
+/// noise or delay, `odom_true` has the truth.
 ///
 /// @tparam Vehicle flies: simulator::Quadrotor's functions. A parameter of the template, so that
 ///         this package knows no plant
@@ -30,11 +33,11 @@ class PlantComponent : public runtime::Component {
       : node_(node),
         config_(node.parameters<Config>([this](const Config& c) { return reconfigure(c); })),
         vehicle_(make_vehicle(config_, make_plant)),
-        reporter_(node, vehicle_.plant_name()),
+        reporter_(node, StageRole::vehicle, vehicle_.plant_name()),
         topics_(node, reporter_, !config_.vehicle.sensor.is_perfect()) {
-    node.subscribe<goshawk_msgs::msg::ThrustAttitude>(
+    node.subscribe<goshawk_msgs::msg::AttitudeSetpoint>(
         "command", runtime::Qos::best_effort(),
-        [this](const goshawk_msgs::msg::ThrustAttitude& m, const runtime::MessageInfo&) {
+        [this](const goshawk_msgs::msg::AttitudeSetpoint& m, const runtime::MessageInfo&) {
           on_command(m);
         });
     const double period_s = 1.0 / config_.plant.rate_hz;
@@ -68,7 +71,7 @@ class PlantComponent : public runtime::Component {
     return success();
   }
 
-  void on_command(const goshawk_msgs::msg::ThrustAttitude& m) {
+  void on_command(const goshawk_msgs::msg::AttitudeSetpoint& m) {
     const auto command = conversions::from_msg(m);
     const Status status = command ? vehicle_.command(*command) : command.error();
     if (!status) return reporter_.complain(status.error());
@@ -97,11 +100,22 @@ class PlantComponent : public runtime::Component {
     if (vehicle_.needs_map() && !map_) {
       map_.emplace(node_, reporter_, [this](const auto& grid) { vehicle_.set_map(grid); });
     }
-    goshawk_msgs::msg::VehicleStatus status;
-    status.failsafe(vehicle_.control() != Control::commanded);
-    status.command_age(command_ns_ == 0 ? -1.0 : double(last_ns_ - command_ns_) * 1e-9);
-    topics_.publish_status(status, node_.now_ns());
+    publish_status();
     topics_.publish_pose(vehicle_.state(), node_.now_ns());
+  }
+
+  void publish_status() {
+    namespace constants = goshawk_msgs::msg::VehicleStatus_Constants;
+    const bool commanded = vehicle_.control() == Control::commanded;
+    const bool was_commanded = command_ns_ != 0;
+    goshawk_msgs::msg::VehicleStatus status;
+    status.armed(true);  // it hovers from the start
+    status.control(commanded ? constants::CONTROL_GOSHAWK : constants::CONTROL_AUTOPILOT);
+    status.failsafe(was_commanded && !commanded);
+    status.resets(0);  // a simulated position never jumps
+    status.battery(-1.0);
+    status.command_age(was_commanded ? double(last_ns_ - command_ns_) * 1e-9 : -1.0);
+    topics_.publish_status(status, node_.now_ns());
   }
 
   /// Loss of control is reported once each time.
@@ -112,9 +126,9 @@ class PlantComponent : public runtime::Component {
       reporter_.fault(fail(ErrorCode::tracking_lost, "still no commands: landing at " + place));
     } else if (control == Control::failsafe && said_ == Control::commanded) {
       reporter_.fault(fail(ErrorCode::tracking_lost,
-                           "commands stopped coming: braking and holding; landing after " +
-                               std::to_string(config_.vehicle.failsafe_hold_s) +
-                               " s, where that is free"));
+                           fmt::format("commands stopped coming: braking and holding; landing "
+                                       "after {} s if the way down is free",
+                                       config_.vehicle.failsafe_hold_s)));
     }
     said_ = control;
     const Error& why = vehicle_.not_landing();

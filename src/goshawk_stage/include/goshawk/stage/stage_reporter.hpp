@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "goshawk/core/error.hpp"
+#include "goshawk/core/stage_role.hpp"
 #include "goshawk/runtime/node.hpp"
 #include "goshawk_msgs.h"
 
@@ -21,7 +22,7 @@ class StageReporter {
  public:
   using Counters = std::initializer_list<std::pair<const char*, double>>;
 
-  StageReporter(runtime::Node& node, std::string implementation);
+  StageReporter(runtime::Node& node, StageRole role, std::string implementation);
 
   void set_implementation(std::string implementation);
 

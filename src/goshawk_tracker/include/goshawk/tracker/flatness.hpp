@@ -13,9 +13,9 @@ namespace goshawk::tracker {
 /// @param yaw_rad, yaw_rate_rad_s heading of the body's x axis in the map (the first of the Euler
 ///        angles z, y, x, as in yaw_of), and its derivative
 /// @return thrust [N] for mass_kg, attitude, and body rates in the axes of that attitude
-ThrustAttitude thrust_attitude_of(const Vec3& specific_force_map,
-                                  const Vec3& specific_force_rate_map, double yaw_rad,
-                                  double yaw_rate_rad_s, double mass_kg);
+AttitudeSetpoint thrust_attitude_of(const Vec3& specific_force_map,
+                                    const Vec3& specific_force_rate_map, double yaw_rad,
+                                    double yaw_rate_rad_s, double mass_kg);
 
 /// @return the same angle in [-pi, pi]
 double wrapped(double angle_rad);

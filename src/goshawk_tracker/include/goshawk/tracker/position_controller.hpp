@@ -29,7 +29,7 @@ class PositionController {
 
   /// @param dt_s [s] since the state of the previous call; 0 for the same state again
   /// @pre everything finite; unit quaternion
-  ThrustAttitude step(const RigidBodyState& state, const Target& target, double dt_s);
+  AttitudeSetpoint step(const RigidBodyState& state, const Target& target, double dt_s);
 
   /// [m/s^2] what the disturbance observer has learnt
   const Vec3& disturbance_map() const { return observer_.disturbance_map(); }

@@ -77,9 +77,9 @@ class Tracker {
   ///         from the future), tracking_lost (older than odometry_timeout_s). A stamp that falls
   ///         back by more than odometry_timeout_s is a simulation that began anew: everything is
   ///         forgotten, and the vehicle holds where it is.
-  Result<ThrustAttitude> step(const RigidBodyState& state, std::int64_t stamp_ns,
-                              std::int64_t now_ns);
-  Result<ThrustAttitude> step(const RigidBodyState& state, std::int64_t now_ns) {
+  Result<AttitudeSetpoint> step(const RigidBodyState& state, std::int64_t stamp_ns,
+                                std::int64_t now_ns);
+  Result<AttitudeSetpoint> step(const RigidBodyState& state, std::int64_t now_ns) {
     return step(state, now_ns, now_ns);
   }
 

@@ -66,7 +66,6 @@ class Server {
   /// To one client only: what a late subscriber missed.
   void send_to(std::uint64_t client, std::uint32_t channel, std::int64_t stamp_ns,
                std::span<const unsigned char> cdr);
-  bool has_subscriber(std::uint32_t channel) const;
   /// A sentence that the client shows its user.
   void tell(std::uint64_t client, StatusLevel level, const std::string& sentence);
 

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "goshawk/core/stage_role.hpp"
+
+/// Values of status messages that have names (STATE_ARRIVED), for code and for people.
+namespace goshawk::conversions {
+
+/// StageReport's `stage`
+std::uint8_t to_msg(StageRole role);
+/// @return other for a value that has no constant
+StageRole stage_role_of(std::uint8_t stage);
+
+/// NavigatorState's `state` as a word: "arrived"; "unknown" for a value that has no constant.
+std::string_view navigator_state_word(std::uint8_t state);
+/// TrackingState's `mode` as a word: "follow"; "unknown" for a value that has no constant.
+std::string_view tracking_mode_word(std::uint8_t mode);
+
+}  // namespace goshawk::conversions
