@@ -195,7 +195,7 @@ std::string fault(const char* type_name, const char* json) {
 TEST(JsonToCdr, NamesTheNearestFieldForAnUnknownOne) {
   EXPECT_THAT(
       fault("geometry_msgs/msg/PoseStamped", R"({"header": {"frameid": "map"}})"),
-      HasSubstr("header 'frameid' is no field of std_msgs/msg/Header; did you mean frame_id?"));
+      HasSubstr("header 'frameid' is not a field of std_msgs/msg/Header; did you mean frame_id?"));
   EXPECT_THAT(fault("std_msgs/msg/String", R"({"zzzzzzz": 1})"), HasSubstr("its fields are data"));
 }
 
