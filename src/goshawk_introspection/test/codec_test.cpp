@@ -171,7 +171,7 @@ TEST(CdrToJson, NamesTheFieldAtFault) {
   bytes[4 + 8 + 4 + 1] = 7;  // stamp, frame_id's length, its zero, then the bool
   const auto json = cdr_to_json(type("goshawk_msgs/msg/VehicleStatus"), bytes);
   ASSERT_FALSE(json);
-  EXPECT_THAT(json.error().message, HasSubstr("failsafe is a bool of value 7"));
+  EXPECT_THAT(json.error().message, HasSubstr("armed is a bool of value 7"));
 }
 
 TEST(CdrToJson, RefusesOtherEncapsulationsAndLeftovers) {
