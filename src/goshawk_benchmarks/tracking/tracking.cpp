@@ -48,7 +48,7 @@ Result<Mission> plan(double density, std::uint64_t seed) {
   auto blocked = inflate(world->occupied, growth_m, world->geometry.resolution_m);
   if (!blocked) return blocked.error();
   const auto grid = std::make_shared<const VoxelGrid>(VoxelGrid{.geometry = world->geometry,
-                                                                .occupied = *std::move(blocked),
+                                                                .grown = *std::move(blocked),
                                                                 .known = {},
                                                                 .inflation_m = growth_m});
   auto search = path_search::PathSearch::create({}).value();
@@ -60,11 +60,12 @@ Result<Mission> plan(double density, std::uint64_t seed) {
   if (!corridor) return corridor.error();
   const FlatState start{.position = path->waypoints_map.front()};
   const FlatState goal{.position = path->waypoints_map.back()};
-  auto solution = trajectory_optimizer::TrajectoryOptimizer::create({}).value().optimise(
-      *corridor, start, goal, Limits{});
+  const PlanRequest request{.start = start, .goal = goal, .limits = {}};
+  auto solution =
+      trajectory_optimizer::TrajectoryOptimizer::create({}).value().optimise(request, *corridor);
   if (!solution) return solution.error();
   return Mission{{.id = seed,
-                  .trajectory = std::move(solution->trajectory),
+                  .trajectory = solution->trajectory(),
                   .polytopes = std::move(corridor->polytopes),
                   .limits = Limits{},
                   .start = start,

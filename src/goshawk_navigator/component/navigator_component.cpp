@@ -3,7 +3,6 @@
 #include "goshawk/navigator/navigator.hpp"
 #include "goshawk/runtime/component.hpp"
 #include "goshawk/stage/intake.hpp"
-#include "pictures.hpp"
 
 namespace goshawk::navigator {
 namespace {
@@ -42,10 +41,7 @@ class NavigatorComponent : public Component {
         requests_(node.advertise<msg::PlanRequest>("plan_request", Qos::reliable_last())),
         commits_(node.advertise<msg::CommittedTrajectory>("committed_trajectory", Qos::latched())),
         states_(node.advertise<msg::NavigatorState>("navigator_state", Qos::latched(20))),
-        alive_(node.advertise<msg::NavigatorState>("navigator_alive", Qos::best_effort())),
-        path_lines_(node.advertise<nav_msgs::msg::Path>("path_line", Qos::best_effort())),
-        markers_(
-            node.advertise<visualization_msgs::msg::MarkerArray>("markers", Qos::best_effort())) {
+        alive_(node.advertise<msg::NavigatorState>("navigator_alive", Qos::best_effort())) {
     subscribe();
     node.every(0.02, [this] {
       navigator_.tick(node_.now_ns());
@@ -155,8 +151,6 @@ class NavigatorComponent : public Component {
     conversions::fill_msg(committed, m);
     reporter_.send(commits_, m);
     reporter_.answered(committed.id(), {.wire_ns = wire_ns_, .compute_ns = 0});
-    reporter_.send(path_lines_, path_line(committed.flown(), committed.start_time_ns(), 0.05));
-    reporter_.send(markers_, corridor_markers(committed));
   }
 
   void publish(const StateOrder& order) {
@@ -179,8 +173,6 @@ class NavigatorComponent : public Component {
   Publisher<msg::CommittedTrajectory> commits_;
   Publisher<msg::NavigatorState> states_;
   Publisher<msg::NavigatorState> alive_;
-  Publisher<nav_msgs::msg::Path> path_lines_;
-  Publisher<visualization_msgs::msg::MarkerArray> markers_;
   msg::BezierTrajectory candidate_;  // the newest certified one, to commit
   msg::NavigatorState state_message_;
   std::int64_t wire_ns_ = 0;

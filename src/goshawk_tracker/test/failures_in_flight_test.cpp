@@ -27,9 +27,9 @@ simulator::Config anywhere() {
 std::shared_ptr<const VoxelGrid> room(double table_m) {
   auto grid = std::make_shared<VoxelGrid>();
   grid->geometry = {.origin_map = {-2.0, -2.0, 0.0}, .resolution_m = 0.2, .size = {20, 70, 15}};
-  grid->occupied = BitGrid(grid->geometry.size, true);
+  grid->grown = BitGrid(grid->geometry.size, true);
   for (int z = 0; 0.2 * z < table_m - 0.1; ++z) {
-    for (int y = 50; y < 70; ++y) grid->occupied.set_run(0, 20, y, z, true);
+    for (int y = 50; y < 70; ++y) grid->grown.set_run(0, 20, y, z, true);
   }
   return grid;
 }
