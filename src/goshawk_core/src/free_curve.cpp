@@ -158,7 +158,7 @@ std::optional<Obstruction> obstruction_of_part(const VoxelGrid& grid, const Bezi
     }
     curve = kept;
   }
-  Prover prover(grid.occupied, kTouch_m / g.resolution_m);
+  Prover prover(grid.grown, kTouch_m / g.resolution_m);
   if (prover.prove(curve, begin, end)) return {};
   Obstruction found = prover.obstruction();
   found.time_s *= piece.duration_s;
@@ -194,7 +194,7 @@ Status check_against(const VoxelGrid& grid, const CommittedTrajectory& committed
   const auto found = find_obstruction(grid, committed.flown(), from_s,
                                       std::numeric_limits<double>::infinity());
   if (!found) return success();
-  const char* what = !grid.occupied.contains(found->voxel) ? "its edge"
+  const char* what = !grid.grown.contains(found->voxel) ? "its edge"
                      : grid.unknown_is_occupied && !grid.is_known(found->voxel)
                          ? "unknown space"
                          : "an obstacle";

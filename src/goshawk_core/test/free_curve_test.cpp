@@ -18,7 +18,7 @@ constexpr double kForever = std::numeric_limits<double>::infinity();
 VoxelGrid empty_grid() {
   VoxelGrid grid;
   grid.geometry = {.origin_map = {1.0, -2.0, 0.3}, .resolution_m = 0.2, .size = {30, 12, 10}};
-  grid.occupied = BitGrid(grid.geometry.size, true);
+  grid.grown = BitGrid(grid.geometry.size, true);
   grid.version = 7;
   return grid;
 }
@@ -28,7 +28,7 @@ VoxelGrid random_grid(Random& random, double share) {
   const Index3 n = grid.geometry.size;
   for (int z = 0; z < n.z; ++z) {
     for (int y = 0; y < n.y; ++y) {
-      for (int x = 0; x < n.x; ++x) grid.occupied.set({x, y, z}, random.chance(share));
+      for (int x = 0; x < n.x; ++x) grid.grown.set({x, y, z}, random.chance(share));
     }
   }
   return grid;
@@ -62,7 +62,7 @@ double depth_at(const VoxelGrid& grid, const Vec3& p_map) {
     for (int y = -1; y <= 1; ++y) {
       for (int x = -1; x <= 1; ++x) {
         const Index3 i = at + Index3{x, y, z};
-        if (grid.occupied.test(i)) continue;
+        if (grid.grown.test(i)) continue;
         const Vec3 lo(i.x, i.y, i.z);
         const Vec3 in = p.cwiseMax(lo).cwiseMin(lo + Vec3::Ones());
         nearest_free = std::min(nearest_free, (p - in).norm());
@@ -103,7 +103,7 @@ TEST(FreeCurve, NeverSaysFreeWhereDenseSamplesAreBlockedAndNamesTheFirstPlace) {
     }
     ++blocked;
     // And it is true: the curve is at that voxel then, which is blocked.
-    ASSERT_TRUE(grid.occupied.test(found->voxel));
+    ASSERT_TRUE(grid.grown.test(found->voxel));
     ASSERT_LT(distance_to(grid, found->voxel, curve.sample(found->time_s).position), 1e-3) << run;
   }
   EXPECT_GT(free, 300);
@@ -112,7 +112,7 @@ TEST(FreeCurve, NeverSaysFreeWhereDenseSamplesAreBlockedAndNamesTheFirstPlace) {
 
 TEST(FreeCurve, FacesEdgesAndCornersMayBeTouched) {
   VoxelGrid grid = empty_grid();
-  grid.occupied.set({10, 5, 5}, true);
+  grid.grown.set({10, 5, 5}, true);
   const auto is_free = [&](const Vec3& a, const Vec3& b) {
     return !find_obstruction(grid, line_in(grid, a, b));
   };
@@ -129,10 +129,10 @@ TEST(FreeCurve, FacesEdgesAndCornersMayBeTouched) {
 
 TEST(FreeCurve, BetweenTwoBlockedVoxelsThereIsNoWay) {
   VoxelGrid grid = empty_grid();
-  grid.occupied.set_run(8, 12, 5, 5, true);
+  grid.grown.set_run(8, 12, 5, 5, true);
   const BezierPiece between = line_in(grid, {5, 5.5, 6}, {15, 5.5, 6});
   EXPECT_FALSE(find_obstruction(grid, between));
-  grid.occupied.set_run(11, 14, 5, 6, true);
+  grid.grown.set_run(11, 14, 5, 6, true);
   const auto found = find_obstruction(grid, between);
   ASSERT_TRUE(found);
   EXPECT_NEAR(found->time_s, 2.0 * (11.0 - 5.0) / 10.0, 1e-3);
@@ -169,7 +169,7 @@ TEST(FreeCurve, CurvesOnPlanesThatTouchTheCubesAreFree) {
     VoxelGrid grid = empty_grid();
     const Index3 cube{8 + int(random.below(12)), 3 + int(random.below(6)),
                       2 + int(random.below(6))};
-    grid.occupied.set(cube, true);
+    grid.grown.set(cube, true);
     const HalfSpace plane = supporting(random, cube);
     // The touched corner, and two directions in the plane.
     Vec3 touched(cube.x, cube.y, cube.z);
@@ -199,7 +199,7 @@ TEST(FreeCurve, CurvesOnPlanesThatTouchTheCubesAreFree) {
 
 TEST(FreeCurve, APartOfATrajectoryIsLookedAtAlone) {
   VoxelGrid grid = empty_grid();
-  grid.occupied.set({20, 5, 5}, true);
+  grid.grown.set({20, 5, 5}, true);
   Trajectory trajectory;
   trajectory.pieces = {line_in(grid, {2, 5.5, 5.5}, {12, 5.5, 5.5}),
                        line_in(grid, {12, 5.5, 5.5}, {28, 5.5, 5.5})};
@@ -224,7 +224,7 @@ TEST(FreeCurve, ACommittedTrajectoryIsRefusedWithTimePlaceAndVersion) {
   const auto committed =
       CommittedTrajectory::make({.id = 12, .nominal = std::move(certified).value()}).value();
   EXPECT_TRUE(check_against(grid, committed, 0.0));
-  grid.occupied.set(*grid.geometry.index_of({4, -0.9, 1.4}), true);
+  grid.grown.set(*grid.geometry.index_of({4, -0.9, 1.4}), true);
   const auto status = check_against(grid, committed, 0.0);
   EXPECT_EQ(status.code(), ErrorCode::trajectory_blocked);
   for (const char* word : {"trajectory 12", "map 7", "an obstacle", "3 s"}) {
