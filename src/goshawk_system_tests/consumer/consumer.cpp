@@ -51,17 +51,6 @@ CertifiedTrajectory plan(const std::shared_ptr<const VoxelGrid>& map, const Flat
   return solution.certified;
 }
 
-tracker::CommittedTrajectory to_track(const CommittedTrajectory& committed) {
-  const CertifiedTrajectory& nominal = committed.nominal();
-  return {.id = committed.id(),
-          .trajectory = committed.flown(),
-          .polytopes = committed.flown_polytopes(),
-          .limits = nominal.limits(),
-          .start = nominal.start(),
-          .goal = nominal.goal(),
-          .start_time_ns = committed.start_time_ns()};
-}
-
 // @return [m] the largest tracking error
 double fly(const CommittedTrajectory& committed, const FlatState& start) {
   auto vehicle = need(simulator::Quadrotor::create({}), "simulator");
@@ -71,7 +60,7 @@ double fly(const CommittedTrajectory& committed, const FlatState& start) {
   while (vehicle.time_ns() < std::int64_t(1e9 * (committed.flown().duration_s() + 1.0))) {
     const auto now_ns = vehicle.time_ns();
     need(vehicle.command(need(tracker.step(vehicle.state(), now_ns), "step")), "command");
-    if (!accepted) need(tracker.accept(to_track(committed), now_ns), "accept");
+    if (!accepted) need(tracker.accept(committed, now_ns), "accept");
     accepted = true;
     need(vehicle.advance(0.004), "advance");
   }
