@@ -28,7 +28,7 @@ Result<std::vector<Vec3>> search(const VoxelGrid& grid, const Vec3& start, const
     const Index3 i = queue[head];
     for (int k = 0; k < 6; ++k) {
       const Index3 next{i.x + steps[k].x, i.y + steps[k].y, i.z + steps[k].z};
-      if (grid.occupied.test(next) || step_to[index(next)] >= 0) continue;
+      if (grid.grown.test(next) || step_to[index(next)] >= 0) continue;
       step_to[index(next)] = k;
       queue.push_back(next);
     }

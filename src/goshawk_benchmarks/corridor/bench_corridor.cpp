@@ -19,7 +19,6 @@ namespace {
 
 using corridor_builder::Config;
 using corridor_builder::CorridorBuilder;
-using corridor_builder::RawObstacles;
 namespace check = corridor_builder::test_support;
 
 constexpr double kWhole_m = 1000.0;  // segments are not split: the baseline does not either
@@ -45,7 +44,7 @@ struct Generator {
   Corridor corridor = {};  // the last answer, reused
 
   void run(const Segment& s) {
-    const VoxelGrid& grid = *s.scene->grown;
+    const VoxelGrid& grid = *s.scene->grid;
     if (!builder) {
       const double reach_m = Config{}.local_box_m;
       corridor.waypoints_map = s.ends_map;
@@ -53,8 +52,7 @@ struct Generator {
       corridor.overlaps.clear();
       return;
     }
-    const RawObstacles raw{&s.scene->raw, grid.inflation_m, nullptr};
-    const auto status = builder->build(grid, s.ends_map, sphere ? &raw : nullptr, corridor);
+    const auto status = builder->build(grid, s.ends_map, corridor);
     if (!status) throw std::runtime_error(name + ": " + status.error().message);
   }
 };
@@ -84,7 +82,7 @@ struct Quality {
   int lost = 0;  // segments that are not inside
 
   void add(const Generator& g, const Segment& s) {
-    const VoxelGrid& grid = *s.scene->grown;
+    const VoxelGrid& grid = *s.scene->grid;
     for (const Polytope& polytope : g.corridor.polytopes) {
       const Volume volume = volume_of(polytope, grid);
       volume_m3.push_back(volume.total_m3);
@@ -92,7 +90,7 @@ struct Quality {
       radius_m.push_back(chebyshev_ball(polytope).radius_m);
       faces.push_back(faces_of(polytope));
       overlapping +=
-          g.sphere ? !check::sphere_faults(polytope, s.scene->raw, grid.geometry, grid.inflation_m)
+          g.sphere ? !check::sphere_faults(polytope, grid.raw, grid.geometry, grid.inflation_m)
                           .empty()
                    : check::cuts_into_a_voxel(polytope, grid);
     }
@@ -166,11 +164,10 @@ void measure_paths(Report& report, const WorldClass& world, const std::vector<Sc
     std::vector<double> radius_voxels;
     std::size_t segments = 0, polytopes = 0, below = 0;
     for (const Scene& scene : scenes) {
-      const RawObstacles raw{&scene.raw, scene.grown->inflation_m, nullptr};
       for (const auto& path : scene.paths_map) {
         Corridor corridor;
         Status status = success();
-        const auto run = [&] { status = builder.build(*scene.grown, path, &raw, corridor); };
+        const auto run = [&] { status = builder.build(*scene.grid, path, corridor); };
         const Timing t = compare("path", {{name, run}}, report.options().quick ? 3 : 9)[0];
         if (!status) throw std::runtime_error(status.error().message);
         whole.append(t);
@@ -181,7 +178,7 @@ void measure_paths(Report& report, const WorldClass& world, const std::vector<Sc
         segments += path.size() - 1;
         polytopes += corridor.polytopes.size();
         for (const Ball& ball : corridor.overlaps) {
-          const double r = ball.radius_m / scene.grown->geometry.resolution_m;
+          const double r = ball.radius_m / scene.grid->geometry.resolution_m;
           radius_voxels.push_back(r);
           below += r < 0.5 * (1.0 - 1e-5);
         }
@@ -214,7 +211,7 @@ void measure_map_size(Report& report) {
     CorridorBuilder builder = builder_of({});
     Corridor corridor;
     const auto run = [&] {
-      if (!builder.build(*scene.grown, scene.paths_map[0], nullptr, corridor)) {
+      if (!builder.build(*scene.grid, scene.paths_map[0], corridor)) {
         throw std::runtime_error("the room's path is blocked");
       }
     };

@@ -20,7 +20,7 @@ std::vector<Vec3> local_points(const VoxelGrid& grid, const LocalBox& box) {
   for (int z = int(std::floor(from.z())); z < int(std::ceil(to.z())); ++z) {
     for (int y = int(std::floor(from.y())); y < int(std::ceil(to.y())); ++y) {
       for (int x = int(std::floor(from.x())); x < int(std::ceil(to.x())); ++x) {
-        if (grid.occupied.test({x, y, z})) points.push_back(g.center({x, y, z}));
+        if (grid.grown.test({x, y, z})) points.push_back(g.center({x, y, z}));
       }
     }
   }

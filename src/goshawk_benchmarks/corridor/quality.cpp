@@ -42,7 +42,7 @@ Volume volume_of(const Polytope& polytope, const VoxelGrid& grid) {
       const Vec3 p = g.origin_map + g.resolution_m * Vec3(0.0, y, z);
       double first = from.x(), last = to.x();
       for (int i = 0; i < polytope.faces(); ++i) {
-        const double n = polytope.A(i, 0) * g.resolution_m;
+        const double n = polytope.A()(i, 0) * g.resolution_m;
         const double rest = polytope.b()[i] - polytope.A().row(i).dot(p);
         if (n > 1e-12) last = std::min(last, rest / n);
         if (n < -1e-12) first = std::max(first, rest / n);
@@ -51,7 +51,7 @@ Volume volume_of(const Polytope& polytope, const VoxelGrid& grid) {
       if (!(last > first)) continue;
       volume.total_m3 += last - first;
       volume.stolen_m3 +=
-          occupied_between(grid.occupied, first, last, int(std::floor(y)), int(std::floor(z)));
+          occupied_between(grid.grown, first, last, int(std::floor(y)), int(std::floor(z)));
     }
   }
   const double cell_m3 = std::pow(g.resolution_m, 3) * step * step;

@@ -20,8 +20,8 @@ Vec3 random_centre(const GridGeometry& g, Random& random) {
 
 void find_paths(int count, std::uint64_t seed, Scene& scene) {
   auto search = std::move(path_search::PathSearch::create({})).value();
-  search.set_map(scene.grown);
-  const GridGeometry& g = scene.grown->geometry;
+  search.set_map(scene.grid);
+  const GridGeometry& g = scene.grid->geometry;
   const double far_m = 0.3 * (g.upper_corner_map() - g.origin_map).norm();
   Random random(seed);
   for (int tries = 0; tries < 40 * count && int(scene.paths_map.size()) < count; ++tries) {
@@ -37,7 +37,8 @@ void find_paths(int count, std::uint64_t seed, Scene& scene) {
 std::shared_ptr<VoxelGrid> grown_from(const GridGeometry& geometry, const BitGrid& raw) {
   auto grid = std::make_shared<VoxelGrid>();
   grid->geometry = geometry;
-  grid->occupied = inflate(raw, kRadius_m, kResolution_m).value();
+  grid->grown = inflate(raw, kRadius_m, kResolution_m).value();
+  grid->raw = raw;
   grid->inflation_m = kRadius_m;
   return grid;
 }
@@ -56,7 +57,7 @@ std::vector<Scene> make_scenes(const std::string& kind, const Vec3& size_m, doub
     spec.seed = seed;
     const auto world = worlds::make_world(spec);
     if (!world.ok()) continue;
-    Scene scene{world->occupied, grown_from(world->geometry, world->occupied), {}};
+    Scene scene{grown_from(world->geometry, world->occupied), {}};
     find_paths(paths, seed, scene);
     if (!scene.paths_map.empty()) scenes.push_back(std::move(scene));
   }
@@ -65,23 +66,24 @@ std::vector<Scene> make_scenes(const std::string& kind, const Vec3& size_m, doub
 
 Scene room_in_a_map(double side_m) {
   const auto small = make_scenes("boxes", Vec3(8, 8, 4), 0.3, 1, 1);
-  const Index3 room = small[0].raw.size();
+  const Index3 room = small[0].grid->raw.size();
   const int n = int(side_m / kResolution_m);
-  GridGeometry geometry = small[0].grown->geometry;
+  GridGeometry geometry = small[0].grid->geometry;
   geometry.size = {n, n, room.z};
-  Scene scene{BitGrid(geometry.size, true), {}, small[0].paths_map};
+  Scene scene{{}, small[0].paths_map};
   auto grid = std::make_shared<VoxelGrid>();
   grid->geometry = geometry;
-  grid->occupied = BitGrid(geometry.size, true);
+  grid->grown = BitGrid(geometry.size, true);
+  grid->raw = BitGrid(geometry.size, true);
   for (int z = 0; z < room.z; ++z) {
     for (int y = 0; y < room.y; ++y) {
       for (int x = 0; x < room.x; ++x) {
-        scene.raw.set({x, y, z}, small[0].raw.get({x, y, z}));
-        grid->occupied.set({x, y, z}, small[0].grown->occupied.get({x, y, z}));
+        grid->raw.set({x, y, z}, small[0].grid->raw.get({x, y, z}));
+        grid->grown.set({x, y, z}, small[0].grid->grown.get({x, y, z}));
       }
     }
   }
-  scene.grown = std::move(grid);
+  scene.grid = std::move(grid);
   return scene;
 }
 

@@ -8,16 +8,15 @@
 
 namespace goshawk::bench {
 
-/// A made-up world, grown by the vehicle, and pruned paths that JA* finds in it.
+/// A made-up world, inflated by the vehicle, and pruned paths that JA* finds in it.
 struct Scene {
-  BitGrid raw;
-  std::shared_ptr<const VoxelGrid> grown;
+  std::shared_ptr<const VoxelGrid> grid;  // with raw voxels
   std::vector<std::vector<Vec3>> paths_map;
 };
 
-/// Of one kind, size and density; 0.2 m voxels, grown by 0.2 m.
+/// Of one kind, size and density; 0.2 m voxels, inflated by 0.2 m.
 /// @param paths wanted in each world; each at least three waypoints long
-/// @return fewer worlds where a seed gives none
+/// @return fewer worlds if a seed gives none
 std::vector<Scene> make_scenes(const std::string& kind, const Vec3& size_m, double density,
                                int worlds, int paths);
 

@@ -75,7 +75,7 @@ class MapWriter : public Running {
   explicit MapWriter(Context& context)
       : Running(context, "map_writer"),
         publisher_(node().advertise<msg::VoxelGrid>("map/voxels", Qos::latched())) {
-    message_.occupied().assign(kMap_byte / 8, 0x5555555555555555);
+    message_.grown().assign(kMap_byte / 8, 0x5555555555555555);
     node().every(kMapPeriod_s, [this] {
       message_.header(conversions::make_header(node().now_ns()));
       (void)publisher_.publish(message_);

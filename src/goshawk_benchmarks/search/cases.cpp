@@ -134,7 +134,7 @@ std::size_t resident_bytes() {
 std::shared_ptr<VoxelGrid> grid_of(const World& world, double resolution_m) {
   auto grid = std::make_shared<VoxelGrid>();
   grid->geometry = {Vec3::Zero(), resolution_m, world.blocked.size()};
-  grid->occupied = world.blocked;
+  grid->grown = world.blocked;
   return grid;
 }
 

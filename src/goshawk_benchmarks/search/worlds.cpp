@@ -134,12 +134,12 @@ World octomap(const std::string& name, std::size_t queries) {
   World world{name, {}, {}};
   const auto source = load_map(data_folder() + "/octomap/" + name);
   if (!source) return world;
-  const auto raw = voxelize(*source->tree);
+  const auto raw = voxelize(*source);
   if (!raw) return world;
   const auto grid =
       make_voxel_grid(*raw, {.unknown = UnknownPolicy::blocked, .inflation_m = 0.2}, 1);
   if (!grid) return world;
-  world.blocked = grid->occupied;
+  world.blocked = grid->grown;
   const auto planner = goshawk::path_search::make_grid_search(
       goshawk::path_search::Planner::jastar, goshawk::path_search::CornerRule::no_squeeze);
   planner->set_map(world.blocked);

@@ -52,7 +52,7 @@ class Verbs : public testing::Test {
                                             });
     goshawk_msgs::msg::VoxelGrid map;
     map.header().frame_id("map");
-    map.occupied().assign(100, 7);
+    map.grown().assign(100, 7);
     ASSERT_TRUE(map_.publish(map));
     state_ = node_->advertise<goshawk_msgs::msg::NavigatorState>("state", Qos::latched());
     goshawk_msgs::msg::NavigatorState state;
@@ -135,7 +135,7 @@ TEST_F(Verbs, EchoesMessages) {
 TEST_F(Verbs, EchoesTheLatchedMapToALateComer) {
   const auto map = find({"topic", "echo", "/uav1/map/voxels", "--once", "--json", "--no-arr"});
   EXPECT_EQ(map.status, 0) << map.err;
-  EXPECT_EQ(Json::parse(map.out)["occupied"], "<100 elements>");
+  EXPECT_EQ(Json::parse(map.out)["grown"], "<100 elements>");
 }
 
 TEST_F(Verbs, MeasuresRateDelayAndBandwidth) {

@@ -29,7 +29,7 @@ bool is_blocked(const VoxelGrid& grid, const Vec3& p) {
   const double slack = kTolerance / grid.geometry.resolution_m;
   for (const double side : {-slack, slack}) {  // on a face it belongs to both voxels
     const Vec3 q = g.array() + side;
-    if (!grid.occupied.test(
+    if (!grid.grown.test(
             {int(std::floor(q.x())), int(std::floor(q.y())), int(std::floor(q.z()))})) {
       return false;
     }
@@ -80,7 +80,7 @@ std::string fault_of_space(const msg::Polytope& polytope, std::size_t k, const V
   for (int z = 0; z < size.z; ++z) {
     for (int y = 0; y < size.y; ++y) {
       for (int x = 0; x < size.x; ++x) {
-        if (!grid.occupied.get({x, y, z})) continue;
+        if (!grid.grown.get({x, y, z})) continue;
         double deepest = outside(polytope, grid.geometry.center({x, y, z}));
         // Farther than a voxel's diagonal: none of its corners can be in.
         if (deepest > 1.8 * grid.geometry.resolution_m) continue;

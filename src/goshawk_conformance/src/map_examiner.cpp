@@ -51,7 +51,7 @@ PointCloud2 cloud_of(const std::vector<Vec3>& points_map, std::int64_t now_ns) {
 }
 
 bool same_bits(const VoxelGrid& a, const VoxelGrid& b) {
-  return a.occupied == b.occupied && a.known == b.known;
+  return a.grown == b.grown && a.known == b.known;
 }
 
 }  // namespace
@@ -223,13 +223,13 @@ void MapExaminer::examine_scan() {
   }
   for (const Vec3& p : points) {
     const Index3 i = *geometry.index_of(p);
-    seen.check(grid_->occupied.test(i), "the voxel of " + to_text(p) + " m is free");
+    seen.check(grid_->grown.test(i), "the voxel of " + to_text(p) + " m is free");
     const int reach = int(grid_->inflation_m / geometry.resolution_m);
     for (int axis = 0; axis < 3; ++axis) {
       for (int d = -reach; d <= reach; ++d) {
         const Index3 near{i.x + (axis == 0 ? d : 0), i.y + (axis == 1 ? d : 0),
                           i.z + (axis == 2 ? d : 0)};
-        grown.check(grid_->occupied.test(near),
+        grown.check(grid_->grown.test(near),
                     fmt::format("a voxel {} from an obstacle is free", std::abs(d)));
       }
     }
@@ -262,7 +262,7 @@ void MapExaminer::examine_bad() {
   report_.items.push_back({"keeps its map after bad clouds", same_bits(before, *grid_), ""});
   see(cloud_of(std::vector<Vec3>(20, Vec3(kNan, kNan, kNan)), node_.now_ns()));
   report_.items.push_back(
-      {"does not take missing returns for obstacles", before.occupied == grid_->occupied, ""});
+      {"does not take missing returns for obstacles", before.grown == grid_->grown, ""});
 }
 
 void MapExaminer::examine_recorded(const std::vector<Cloud>& recorded) {

@@ -25,17 +25,17 @@ World make_world(std::uint64_t seed) {
   Random random(seed);
   auto grid = std::make_shared<VoxelGrid>();
   grid->geometry = {.origin_map = Vec3(-1.0, -2.0, 0.0), .resolution_m = 0.2, .size = kSize};
-  grid->occupied = BitGrid(kSize, true);
+  grid->grown = BitGrid(kSize, true);
   grid->version = 7;
   grid->inflation_m = 0.2;
   for (int k = 0; k < 25; ++k) {
     const Index3 from{random.below(kSize.x - 5), random.below(kSize.y - 5), random.below(kSize.z)};
     const Index3 to{from.x + 2 + random.below(4), from.y + 2 + random.below(4),
                     std::min(kSize.z, from.z + 3 + random.below(10))};
-    fill(grid->occupied, from, to, true);
+    fill(grid->grown, from, to, true);
   }
-  fill(grid->occupied, {0, 0, 0}, {kRoom, kRoom, kRoom}, true);
-  fill(grid->occupied, {1, 1, 1}, {kRoom - 1, kRoom - 1, kRoom - 1}, false);
+  fill(grid->grown, {0, 0, 0}, {kRoom, kRoom, kRoom}, true);
+  fill(grid->grown, {1, 1, 1}, {kRoom - 1, kRoom - 1, kRoom - 1}, false);
   World world;
   world.in_room_map = grid->geometry.center({3, 3, 3});
   world.in_obstacle_map = grid->geometry.center({0, 3, 3});
@@ -49,7 +49,7 @@ Vec3 free_point(const World& world, Random& random) {
   for (;;) {
     const Index3 i{random.below(kSize.x), random.below(kSize.y), random.below(kSize.z)};
     const bool in_room = i.x < kRoom && i.y < kRoom && i.z < kRoom;
-    if (!in_room && is_roomy(grid.occupied, i)) return grid.geometry.center(i);
+    if (!in_room && is_roomy(grid.grown, i)) return grid.geometry.center(i);
   }
 }
 

@@ -101,7 +101,7 @@ class ForeignMap {
   void publish_whole() {
     changed_ = false;
     VoxelGrid grid = map_.grid();
-    if (fault_ == MapFault::not_grown) grid.occupied = map_.raw_occupied();
+    if (fault_ == MapFault::not_grown) grid.grown = map_.grid().raw;
     msg::VoxelGrid m;
     conversions::fill_msg(grid, m);
     m.header(conversions::make_header(node_.now_ns()));

@@ -31,12 +31,13 @@ void check(const goshawk_msgs::msg::VoxelGrid& m, const goshawk_msgs::msg::Voxel
   auto grid = conversions::from_msg(m);
   if (!grid) return expect(!grid.error().message.empty());
   expect(grid->check().ok());
-  expect(grid->occupied.count() <= grid->occupied.voxels());
+  expect(grid->grown.count() <= grid->grown.voxels());
   goshawk_msgs::msg::VoxelGrid again;
   again.header(m.header());
   conversions::fill_msg(*grid, again);
   const auto twice = conversions::from_msg(again);
-  expect(twice.ok() && twice->occupied == grid->occupied && twice->known == grid->known);
+  expect(twice.ok() && twice->grown == grid->grown && twice->known == grid->known &&
+         twice->raw == grid->raw);
   const auto update = conversions::from_msg(u);
   if (update && apply(*grid, *update)) expect(grid->check().ok());
 }
@@ -56,8 +57,9 @@ goshawk_msgs::msg::VoxelGrid make_grid(const std::uint8_t*& at, std::size_t& lef
   // Mostly as many words as the size asks for.
   const std::uint64_t rows = std::uint64_t{m.size_y()} * m.size_z();
   const std::uint64_t words = (std::uint64_t{m.size_x()} + 63) / 64 * rows + kind / 64 % 2;
-  m.occupied().resize(std::size_t(words < 4096 ? words : 7), take<std::uint64_t>(at, left));
-  if ((kind & 8U) != 0) m.known().resize(m.occupied().size() + kind / 128, ~std::uint64_t{0});
+  m.grown().resize(std::size_t(words < 4096 ? words : 7), take<std::uint64_t>(at, left));
+  if ((kind & 8U) != 0) m.known().resize(m.grown().size() + kind / 128, ~std::uint64_t{0});
+  if ((kind & 16U) != 0) m.raw().resize(m.grown().size(), take<std::uint64_t>(at, left));
   return m;
 }
 
@@ -65,13 +67,17 @@ goshawk_msgs::msg::VoxelGridUpdate make_update(const std::uint8_t*& at, std::siz
   goshawk_msgs::msg::VoxelGridUpdate u;
   u.header().frame_id("map");
   u.to_version(1);
+  u.shift_word_x(take<std::int8_t>(at, left) % 3);
+  u.shift_brick_y(take<std::int32_t>(at, left));
+  u.shift_brick_z(take<std::int8_t>(at, left) % 3);
   u.bricks().resize(take<std::uint8_t>(at, left) % 4);
   for (auto& brick : u.bricks()) {
     brick.word_x(take<std::uint8_t>(at, left) % 3);
     brick.brick_y(take<std::uint32_t>(at, left));
     brick.brick_z(take<std::uint8_t>(at, left) % 3);
-    brick.occupied().resize(take<std::uint8_t>(at, left) < 250 ? 64 : 63, ~std::uint64_t{0});
+    brick.grown().resize(take<std::uint8_t>(at, left) < 250 ? 64 : 63, ~std::uint64_t{0});
     brick.known().resize(64, 5);
+    if (take<std::uint8_t>(at, left) < 100) brick.raw().resize(64, 9);
   }
   return u;
 }

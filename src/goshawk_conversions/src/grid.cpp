@@ -1,5 +1,7 @@
 #include "goshawk/conversions/grid.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 
@@ -19,17 +21,23 @@ Result<VoxelGrid> from_msg(const goshawk_msgs::msg::VoxelGrid& m) {
   grid.geometry.origin_map = from_msg(m.origin());
   grid.geometry.resolution_m = m.resolution();
   grid.geometry.size = {int(m.size_x()), int(m.size_y()), int(m.size_z())};
-  auto occupied = BitGrid::from_words(grid.geometry.size, true, m.occupied());
-  if (!occupied) return occupied.error();
-  grid.occupied = *std::move(occupied);
+  auto grown = BitGrid::from_words(grid.geometry.size, true, m.grown());
+  if (!grown) return grown.error();
+  grid.grown = *std::move(grown);
   if (!m.known().empty()) {
     auto known = BitGrid::from_words(grid.geometry.size, false, m.known());
     if (!known) return known.error();
     grid.known = *std::move(known);
   }
+  if (!m.raw().empty()) {
+    auto raw = BitGrid::from_words(grid.geometry.size, true, m.raw());
+    if (!raw) return raw.error();
+    grid.raw = *std::move(raw);
+  }
   grid.version = m.version();
   grid.inflation_m = m.inflation();
   grid.unknown_is_occupied = m.unknown_is_occupied();
+  grid.unknown_grows = m.unknown_grows();
   if (auto status = grid.check(); !status) return status.error();
   return grid;
 }
@@ -43,28 +51,37 @@ void fill_msg(const VoxelGrid& grid, goshawk_msgs::msg::VoxelGrid& m) {
   m.size_z(std::uint32_t(grid.geometry.size.z));
   m.inflation(grid.inflation_m);
   m.unknown_is_occupied(grid.unknown_is_occupied);
-  m.occupied().assign(grid.occupied.words().begin(), grid.occupied.words().end());
-  m.known().assign(grid.known.words().begin(), grid.known.words().end());
+  m.unknown_grows(grid.unknown_grows);
+  grid.grown.write_words(m.grown());
+  grid.known.write_words(m.known());
+  grid.raw.write_words(m.raw());
 }
 
 Result<GridUpdate> from_msg(const goshawk_msgs::msg::VoxelGridUpdate& m) {
   if (auto status = check_frame(m.header(), kMapFrame, "a voxel grid update"); !status) {
     return status.error();
   }
-  GridUpdate update{m.from_version(), m.to_version(), {}};
+  GridUpdate update{m.from_version(),
+                    m.to_version(),
+                    {m.shift_word_x(), m.shift_brick_y(), m.shift_brick_z()},
+                    {}};
   update.bricks.reserve(m.bricks().size());
   for (const auto& b : m.bricks()) {
-    if (b.occupied().size() != Brick::kWords || b.known().size() != Brick::kWords) {
+    const bool raw = !b.raw().empty();
+    if (b.grown().size() != Brick::kWords || b.known().size() != Brick::kWords ||
+        (raw && b.raw().size() != Brick::kWords)) {
       return fail(ErrorCode::invalid_input,
-                  "a brick of an update has " + std::to_string(b.occupied().size()) + " and " +
-                      std::to_string(b.known().size()) + " words: 64 and 64 are needed");
+                  fmt::format("a brick of an update has {} grown, {} known and {} raw words: 64, "
+                              "64, and 64 or none are needed",
+                              b.grown().size(), b.known().size(), b.raw().size()));
     }
     constexpr std::uint32_t kMax = 1U << 28;  // far beyond any grid; apply() has the exact check
     Brick brick;
     brick.index = {int(std::min(b.word_x(), kMax)), int(std::min(b.brick_y(), kMax)),
                    int(std::min(b.brick_z(), kMax))};
-    std::ranges::copy(b.occupied(), brick.occupied.begin());
+    std::ranges::copy(b.grown(), brick.grown.begin());
     std::ranges::copy(b.known(), brick.known.begin());
+    if (raw) std::ranges::copy(b.raw(), brick.raw.emplace().begin());
     update.bricks.push_back(brick);
   }
   return update;
@@ -73,6 +90,9 @@ Result<GridUpdate> from_msg(const goshawk_msgs::msg::VoxelGridUpdate& m) {
 void fill_msg(const GridUpdate& update, goshawk_msgs::msg::VoxelGridUpdate& m) {
   m.from_version(update.from_version);
   m.to_version(update.to_version);
+  m.shift_word_x(update.shift.x);
+  m.shift_brick_y(update.shift.y);
+  m.shift_brick_z(update.shift.z);
   m.bricks().resize(update.bricks.size());
   for (std::size_t k = 0; k < update.bricks.size(); ++k) {
     const Brick& brick = update.bricks[k];
@@ -80,8 +100,10 @@ void fill_msg(const GridUpdate& update, goshawk_msgs::msg::VoxelGridUpdate& m) {
     b.word_x(std::uint32_t(brick.index.x));
     b.brick_y(std::uint32_t(brick.index.y));
     b.brick_z(std::uint32_t(brick.index.z));
-    b.occupied().assign(brick.occupied.begin(), brick.occupied.end());
+    b.grown().assign(brick.grown.begin(), brick.grown.end());
     b.known().assign(brick.known.begin(), brick.known.end());
+    b.raw().clear();
+    if (brick.raw) b.raw().assign(brick.raw->begin(), brick.raw->end());
   }
 }
 

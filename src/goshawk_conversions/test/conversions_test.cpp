@@ -18,10 +18,14 @@ TEST(Stamp, SurvivesTheRoundTripAlsoBeforeTheEpoch) {
 TEST(VoxelGridMessage, SurvivesTheRoundTrip) {
   VoxelGrid in;
   in.geometry = {Vec3(-1, 2, 0.5), 0.25, {70, 3, 2}};
-  in.occupied = BitGrid({70, 3, 2}, true);
-  in.occupied.set({69, 2, 1}, true);
+  in.grown = BitGrid({70, 3, 2}, true);
+  in.grown.set({69, 2, 1}, true);
   in.known = BitGrid({70, 3, 2}, false, true);
   in.known.set({0, 0, 0}, false);
+  in.raw = BitGrid({70, 3, 2}, true);
+  in.raw.set({3, 2, 1}, true);
+  in.unknown_is_occupied = false;
+  in.unknown_grows = true;
   in.version = 9;
   in.inflation_m = 0.2;
   goshawk_msgs::msg::VoxelGrid m;
@@ -29,21 +33,30 @@ TEST(VoxelGridMessage, SurvivesTheRoundTrip) {
   fill_msg(in, m);
   const auto out = from_msg(m);
   ASSERT_TRUE(out.ok()) << out.error().message;
-  EXPECT_EQ(out->occupied, in.occupied);
+  EXPECT_EQ(out->grown, in.grown);
   EXPECT_EQ(out->known, in.known);
+  EXPECT_EQ(out->raw, in.raw);
+  EXPECT_FALSE(out->unknown_is_occupied);
+  EXPECT_TRUE(out->unknown_grows);
   EXPECT_EQ(out->version, 9u);
+  in.raw = {};
+  fill_msg(in, m);
+  EXPECT_TRUE(from_msg(m)->raw.empty());
   EXPECT_EQ(out->geometry.origin_map, in.geometry.origin_map);
 }
 
 TEST(VoxelGridMessage, WithTheWrongNumberOfWordsIsRefused) {
   VoxelGrid in;
   in.geometry = {Vec3::Zero(), 0.25, {70, 3, 2}};
-  in.occupied = BitGrid({70, 3, 2}, true);
+  in.grown = BitGrid({70, 3, 2}, true);
   goshawk_msgs::msg::VoxelGrid m;
   m.header(make_header(0));
   fill_msg(in, m);
-  m.occupied().pop_back();
-  EXPECT_EQ(from_msg(m).code(), ErrorCode::invalid_input);
+  for (auto* words : {&m.grown(), &m.known(), &m.raw()}) {
+    fill_msg(in, m);
+    words->resize(11);
+    EXPECT_EQ(from_msg(m).code(), ErrorCode::invalid_input);
+  }
   m.size_x(0);
   EXPECT_EQ(from_msg(m).code(), ErrorCode::map_empty);
   m.size_x(4'000'000'000U);
@@ -57,39 +70,45 @@ TEST(VoxelGridMessage, WithTheWrongNumberOfWordsIsRefused) {
 TEST(VoxelGridUpdateMessage, SurvivesTheRoundTripAndBringsTheGridUpToDate) {
   VoxelGrid grid;
   grid.geometry = {Vec3::Zero(), 0.25, {70, 9, 2}};
-  grid.occupied = BitGrid(grid.geometry.size, true);
+  grid.grown = BitGrid(grid.geometry.size, true);
   grid.known = BitGrid(grid.geometry.size, false);
   grid.version = 3;
-  GridUpdate in{3, 4, {Brick{}}};
+  GridUpdate in{3, 4, {0, -1, 2}, {Brick{}}};
   in.bricks[0].index = {1, 1, 0};
-  in.bricks[0].occupied[0] = 0b101;
+  in.bricks[0].grown[0] = 0b101;
   in.bricks[0].known[0] = 0b111;
+  in.bricks[0].raw.emplace().fill(5);
   goshawk_msgs::msg::VoxelGridUpdate m;
   m.header(make_header(0));
   fill_msg(in, m);
   const auto out = from_msg(m);
   ASSERT_TRUE(out.ok()) << out.error().message;
   EXPECT_EQ(out->bricks, in.bricks);
+  EXPECT_EQ(out->shift, in.shift);
   ASSERT_TRUE(apply(grid, *out).ok());
   EXPECT_EQ(grid.version, 4u);
-  EXPECT_TRUE(grid.occupied.get({66, 8, 0}));
-  EXPECT_FALSE(grid.occupied.get({65, 8, 0}));
-  EXPECT_EQ(grid.occupied.count(), 2);
+  EXPECT_TRUE(grid.grown.get({66, 8, 0}));
+  EXPECT_FALSE(grid.grown.get({65, 8, 0}));
+  EXPECT_EQ(grid.grown.count(), 2);
   EXPECT_EQ(grid.known.count(), 3);
 }
 
 TEST(VoxelGridUpdateMessage, WithShortBricksOrFarIndicesIsRefused) {
-  GridUpdate in{1, 2, {Brick{}}};
+  GridUpdate in{1, 2, {}, {Brick{}}};
   goshawk_msgs::msg::VoxelGridUpdate m;
   m.header(make_header(0));
   fill_msg(in, m);
   m.bricks()[0].known().pop_back();
   EXPECT_EQ(from_msg(m).code(), ErrorCode::invalid_input);
   fill_msg(in, m);
+  m.bricks()[0].raw().resize(63);
+  EXPECT_EQ(from_msg(m).code(), ErrorCode::invalid_input);
+  fill_msg(in, m);
+  ASSERT_TRUE(from_msg(m).ok()) << "no raw words at all";
   m.bricks()[0].brick_z(4'000'000'000U);
   VoxelGrid grid;
   grid.geometry = {Vec3::Zero(), 0.25, {70, 9, 2}};
-  grid.occupied = BitGrid(grid.geometry.size, true);
+  grid.grown = BitGrid(grid.geometry.size, true);
   grid.known = BitGrid(grid.geometry.size, false);
   grid.version = 1;
   const auto far = from_msg(m);

@@ -1,7 +1,8 @@
 #include "goshawk/core/grid_geometry.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
-#include <cstdio>
 
 namespace goshawk {
 
@@ -10,9 +11,9 @@ Status GridGeometry::check() const {
     return fail(ErrorCode::invalid_input, "the grid's origin is not finite");
   }
   if (!(std::isfinite(resolution_m) && resolution_m > 0.0)) {
-    return fail(ErrorCode::invalid_input, "the grid's resolution is " +
-                                              std::to_string(resolution_m) +
-                                              " m: it must be finite and above zero");
+    return fail(ErrorCode::invalid_input,
+                fmt::format("the grid's resolution is {:g} m: it must be finite and above zero",
+                            resolution_m));
   }
   return BitGrid::check_size(size);
 }
@@ -27,15 +28,17 @@ std::optional<Index3> GridGeometry::index_of(const Vec3& p_map) const {
 
 Status VoxelGrid::check() const {
   if (auto status = geometry.check(); !status) return status;
-  if (!(occupied.size() == geometry.size)) {
-    return fail(ErrorCode::invalid_input, "the occupied bits are of " + to_text(occupied.size()) +
-                                              " voxels, the grid of " + to_text(geometry.size));
+  const auto agree = [&](const BitGrid& bits, const char* what) {
+    if (bits.size() == geometry.size) return success();
+    return Status(fail(ErrorCode::invalid_input,
+                       fmt::format("the {} bits are of {} voxels, the grid of {}", what,
+                                   to_text(bits.size()), to_text(geometry.size))));
+  };
+  if (auto status = agree(grown, "grown"); !status) return status;
+  if (!known.empty()) {
+    if (auto status = agree(known, "known"); !status) return status;
   }
-  if (!known.empty() && !(known.size() == geometry.size)) {
-    return fail(ErrorCode::invalid_input, "the known bits are of " + to_text(known.size()) +
-                                              " voxels, the grid of " + to_text(geometry.size));
-  }
-  return success();
+  return raw.empty() ? success() : agree(raw, "raw");
 }
 
 Result<Index3> locate(const VoxelGrid& grid, const Vec3& p_map, Endpoint endpoint) {
@@ -47,23 +50,21 @@ Result<Index3> locate(const VoxelGrid& grid, const Vec3& p_map, Endpoint endpoin
   const auto index = grid.geometry.index_of(p_map);
   if (!index) {
     return fail(start ? ErrorCode::start_outside : ErrorCode::goal_outside,
-                name + " is outside the map, which spans " + to_text(grid.geometry.origin_map) +
-                    " to " + to_text(grid.geometry.upper_corner_map()) + " m");
+                fmt::format("{} is outside the map, which spans {} to {} m", name,
+                            to_text(grid.geometry.origin_map),
+                            to_text(grid.geometry.upper_corner_map())));
   }
-  if (grid.occupied.test(*index)) {
-    if (grid.unknown_is_occupied && !grid.is_known(*index)) {
-      return fail(start ? ErrorCode::start_unknown : ErrorCode::goal_unknown,
-                  name +
-                      " lies in unknown space, which counts as occupied: choose a point that "
-                      "was measured free, or treat unknown space as free");
-    }
-    char inflation[32];
-    std::snprintf(inflation, sizeof inflation, "%.3f", grid.inflation_m);
-    return fail(start ? ErrorCode::start_occupied : ErrorCode::goal_occupied,
-                name + " lies in an obstacle, or closer than " + inflation +
-                    " m to one: choose a point with more clearance, or a smaller radius or margin");
+  if (!grid.grown.test(*index)) return *index;
+  if (grid.unknown_is_occupied && !grid.is_known(*index)) {
+    return fail(start ? ErrorCode::start_unknown : ErrorCode::goal_unknown,
+                name +
+                    " lies in unknown space, which counts as occupied: choose a point that was "
+                    "measured free, or treat unknown space as free");
   }
-  return *index;
+  return fail(start ? ErrorCode::start_occupied : ErrorCode::goal_occupied,
+              fmt::format("{} lies in an obstacle, or closer than {:.3g} m to one: choose a point "
+                          "with more clearance, or a smaller radius or margin",
+                          name, grid.inflation_m));
 }
 
 }  // namespace goshawk

@@ -1,5 +1,7 @@
 #include "goshawk/core/inflation.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -85,6 +87,13 @@ bool reaches_everywhere(double r, Index3 size) {
   return r > 1.001 * std::hypot(gap(size.x), gap(size.y), gap(size.z));
 }
 
+// to |= from, but for the padding.
+void or_row(Word* to, const std::vector<Word>& from, Word last_mask) {
+  const std::size_t last = from.size() - 1;
+  for (std::size_t i = 0; i < last; ++i) to[i] |= from[i];
+  to[last] |= from[last] & last_mask;
+}
+
 bool any(const Word* row, std::size_t words) {
   for (std::size_t i = 0; i < words; ++i) {
     if (row[i] != 0) return true;
@@ -97,11 +106,10 @@ bool any(const Word* row, std::size_t words) {
 Result<BitGrid> inflate(const BitGrid& occupied, double radius_m, double resolution_m) {
   if (!(std::isfinite(radius_m) && radius_m >= 0.0 && std::isfinite(resolution_m) &&
         resolution_m > 0.0)) {
-    return fail(ErrorCode::invalid_input, "cannot grow obstacles by " + std::to_string(radius_m) +
-                                              " m at a resolution of " +
-                                              std::to_string(resolution_m) +
-                                              " m: both must be finite, the radius at least "
-                                              "0, the resolution above 0");
+    return fail(ErrorCode::invalid_input,
+                fmt::format("cannot inflate obstacles by {:g} m at a resolution of {:g} m: both "
+                            "must be finite, the radius at least 0, the resolution above 0",
+                            radius_m, resolution_m));
   }
   const Index3 size = occupied.size();
   if (auto status = BitGrid::check_size(size); !status) return status.error();
@@ -131,12 +139,11 @@ Result<BitGrid> inflate(const BitGrid& occupied, double radius_m, double resolut
         if (to_y < 0 || to_y >= size.y || to_z < 0 || to_z >= size.z) continue;
         widen_row(row, scratch, covered, offset.half_extent);
         covered = offset.half_extent;
-        or_shifted(grown.mutable_row(to_y, to_z), row.data(), words, 0);
+        or_row(grown.mutable_row(to_y, to_z), row, last_mask);
       }
     }
   }
-  // from_words writes the padding again that the shifts ran over.
-  return BitGrid::from_words(size, occupied.outside(), grown.take_words());
+  return grown;
 }
 
 }  // namespace goshawk

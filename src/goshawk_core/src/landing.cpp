@@ -27,7 +27,7 @@ Status check_column(const VoxelGrid& grid, Index3 top, int lowest) {
       return fail(ErrorCode::goal_unknown,
                   "the space below, at " + to_text(grid.geometry.center(i)) + ", was not measured");
     }
-    if (grid.occupied.get(i)) {
+    if (grid.grown.get(i)) {
       return fail(ErrorCode::goal_occupied, "something is below, at " +
                                                 to_text(grid.geometry.center(i)) + " or within " +
                                                 metres(grid.inflation_m) + " of there");

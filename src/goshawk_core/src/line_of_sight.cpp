@@ -115,7 +115,7 @@ bool line_is_free(const BitGrid& blocked, const Vec3& a, const Vec3& b) {
 }
 
 bool line_is_free(const VoxelGrid& grid, const Vec3& a_map, const Vec3& b_map) {
-  return line_is_free(grid.occupied, grid.geometry.to_grid(a_map), grid.geometry.to_grid(b_map));
+  return line_is_free(grid.grown, grid.geometry.to_grid(a_map), grid.geometry.to_grid(b_map));
 }
 
 void supercover(const Vec3& a, const Vec3& b, std::vector<Index3>& cells) {

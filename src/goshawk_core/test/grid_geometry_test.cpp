@@ -13,7 +13,7 @@ namespace {
 VoxelGrid small_grid() {
   VoxelGrid grid;
   grid.geometry = {Vec3(-1.0, 2.0, 0.5), 0.2, {10, 6, 4}};
-  grid.occupied = BitGrid(grid.geometry.size, true);
+  grid.grown = BitGrid(grid.geometry.size, true);
   grid.known = BitGrid(grid.geometry.size, false, true);
   return grid;
 }
@@ -76,7 +76,7 @@ TEST(VoxelGrid, ChecksThatItsBitsFitItsGeometry) {
   EXPECT_TRUE(no_known.is_known({0, 0, 0}));
   EXPECT_FALSE(no_known.is_known({-1, 0, 0}));
   VoxelGrid wrong = small_grid();
-  wrong.occupied = BitGrid({10, 6, 5}, true);
+  wrong.grown = BitGrid({10, 6, 5}, true);
   EXPECT_EQ(wrong.check().code(), ErrorCode::invalid_input);
   wrong = small_grid();
   wrong.known = BitGrid({9, 6, 4}, false);
@@ -93,8 +93,8 @@ TEST(Locate, FindsAFreeVoxel) {
 
 TEST(Locate, NamesTheEndAndTheReason) {
   VoxelGrid grid = small_grid();
-  grid.occupied.set({1, 1, 1}, true);
-  grid.occupied.set({2, 1, 1}, true);
+  grid.grown.set({1, 1, 1}, true);
+  grid.grown.set({2, 1, 1}, true);
   grid.known.set({2, 1, 1}, false);
   const Vec3 occupied = grid.geometry.center({1, 1, 1});
   const Vec3 unknown = grid.geometry.center({2, 1, 1});
@@ -111,7 +111,7 @@ TEST(Locate, NamesTheEndAndTheReason) {
 
 TEST(Locate, CallsAVoxelOccupiedWhereUnknownCountsAsFreeOrAllIsKnown) {
   VoxelGrid grid = small_grid();
-  grid.occupied.set({2, 1, 1}, true);
+  grid.grown.set({2, 1, 1}, true);
   grid.known.set({2, 1, 1}, false);
   const Vec3 p = grid.geometry.center({2, 1, 1});
   grid.unknown_is_occupied = false;

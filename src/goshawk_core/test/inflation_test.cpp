@@ -130,8 +130,9 @@ TEST(Inflate, GrowsMoreWithALargerRadiusAndNeverFreesAVoxel) {
   BitGrid before = grid;
   for (int n = 1; n <= 30; ++n) {
     const BitGrid grown = *inflate(grid, n * 0.13, 0.2);
-    for (std::size_t w = 0; w < grown.words().size(); ++w) {
-      ASSERT_EQ(before.words()[w] & ~grown.words()[w], 0U);
+    const auto old_words = before.to_words(), words = grown.to_words();
+    for (std::size_t w = 0; w < words.size(); ++w) {
+      ASSERT_EQ(old_words[w] & ~words[w], 0U);
     }
     before = grown;
   }

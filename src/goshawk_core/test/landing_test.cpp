@@ -16,7 +16,7 @@ using testing::HasSubstr;
 VoxelGrid grid_of(const BitGrid& raw, double inflation_m = 0.2) {
   VoxelGrid grid;
   grid.geometry = {.origin_map = Vec3::Zero(), .resolution_m = 0.1, .size = raw.size()};
-  grid.occupied = inflate(raw, inflation_m, 0.1).value();
+  grid.grown = inflate(raw, inflation_m, 0.1).value();
   grid.inflation_m = inflation_m;
   return grid;
 }
@@ -75,7 +75,7 @@ TEST(WayDown, IsBlockedBySpaceThatWasNotMeasuredWhateverThePolicy) {
 
 TEST(WayDown, OnAFaceBetweenVoxelsOneFreeColumnIsEnough) {
   VoxelGrid grid = grid_of(empty_room());
-  grid.occupied.set({10, 10, 20}, true);
+  grid.grown.set({10, 10, 20}, true);
   EXPECT_EQ(down(grid, {1.0, 1.05, 3}), ErrorCode::ok);
   EXPECT_EQ(down(grid, {1.01, 1.05, 3}), ErrorCode::goal_occupied);
   EXPECT_EQ(down(grid, {0.0, 0.0, 3}), ErrorCode::ok);

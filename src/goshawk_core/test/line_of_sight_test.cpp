@@ -242,8 +242,8 @@ TEST(LineIsFree, AnswersForHugeSegments) {
 TEST(LineIsFree, MapCoordinatesAreVoxelCoordinatesScaledAndShifted) {
   VoxelGrid grid;
   grid.geometry = {Vec3(-1.0, 2.0, 0.5), 0.2, {10, 8, 6}};
-  grid.occupied = BitGrid(grid.geometry.size, true);
-  grid.occupied.set({5, 4, 3}, true);
+  grid.grown = BitGrid(grid.geometry.size, true);
+  grid.grown.set({5, 4, 3}, true);
   const auto center = [&](int x, int y, int z) { return grid.geometry.center({x, y, z}); };
   EXPECT_FALSE(line_is_free(grid, center(1, 4, 3), center(8, 4, 3)));
   EXPECT_TRUE(line_is_free(grid, center(1, 4, 3), center(4, 4, 3)));

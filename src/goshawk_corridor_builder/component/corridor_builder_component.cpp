@@ -1,9 +1,7 @@
 #include <functional>
 
-#include "goshawk/conversions/grid.hpp"
 #include "goshawk/corridor_builder/config.hpp"
 #include "goshawk/corridor_builder/corridor_builder.hpp"
-#include "goshawk/corridor_builder/raw_map.hpp"
 #include "goshawk/runtime/component.hpp"
 #include "goshawk/stage/intake.hpp"
 #include "goshawk/stage/map_subscription.hpp"
@@ -15,7 +13,7 @@ using namespace goshawk::runtime;
 using namespace goshawk::stage;
 namespace msg = goshawk_msgs::msg;
 
-/// Before the raw map of a version has come, its grown one serves: the same safety, less room.
+/// For a map without raw voxels: the same safety, less room.
 Config on_grown_grid(Config config) {
   config.margin = Margin::grown_grid;
   return config;
@@ -39,12 +37,10 @@ class CorridorBuilderComponent : public Component {
         publisher_(node.advertise<msg::Corridor>("corridor", Qos::reliable_last())),
         map_(node, reporter_),
         paths_(node, reporter_, "path", std::bind_front(&CorridorBuilderComponent::on_path, this)) {
-    if (config_.margin == Margin::sphere) subscribe_raw();
     reporter_.ready("builds corridors with " + std::string(builder_.implementation()));
   }
 
  private:
-  // Which margin is kept, and with it which topics are read, holds from start to end.
   Status reconfigure(const Config& config) {
     if (auto status = builder_.reconfigure(config); !status) return status;
     if (auto status = fallback_.reconfigure(on_grown_grid(config)); !status) return status;
@@ -52,20 +48,10 @@ class CorridorBuilderComponent : public Component {
     return success();
   }
 
-  void subscribe_raw() {
-    node_.subscribe<msg::VoxelGrid>("map/voxels/raw", Qos::latched(),
-                                    [this](const msg::VoxelGrid& m, const MessageInfo&) {
-                                      auto grid = conversions::from_msg(m);
-                                      if (!grid) return reporter_.fault(grid.error());
-                                      raw_.emplace(*std::move(grid));
-                                    });
-  }
+  bool lacks_raw() const { return config_.margin == Margin::sphere && map_.grid()->raw.empty(); }
 
   Result<Corridor> build(std::span<const Vec3> waypoints) {
-    const VoxelGrid& grid = *map_.grid();
-    if (!raw_ || raw_->version() != grid.version) return fallback_.build(grid, waypoints);
-    const RawObstacles raw = raw_->obstacles(grid.inflation_m);
-    return builder_.build(grid, waypoints, &raw);
+    return (lacks_raw() ? fallback_ : builder_).build(*map_.grid(), waypoints);
   }
 
   void on_path(const msg::Path& m, const PlanRequest& request, Timing timing) {
@@ -112,14 +98,16 @@ class CorridorBuilderComponent : public Component {
     reporter_.answered(id, timing,
                        {{"polytopes", double(corridor.polytopes.size())},
                         {"faces", faces},
-                        {"min_overlap_radius_m", corridor.min_overlap_radius_m()}});
+                        {"min_overlap_radius_m", corridor.min_overlap_radius_m()}},
+                       lacks_raw() ? "margin grown_grid: the map brings no raw voxels, set "
+                                     "publish_raw of map_server"
+                                   : "");
   }
 
   Node& node_;
   const Config config_;  // as it was at start
   CorridorBuilder builder_;
-  CorridorBuilder fallback_;   // margin grown_grid
-  std::optional<RawMap> raw_;  // with margin sphere, once it has come
+  CorridorBuilder fallback_;  // margin grown_grid
   StageReporter reporter_;
   Publisher<msg::Corridor> publisher_;
   MapSubscription map_;

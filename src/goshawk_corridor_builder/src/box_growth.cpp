@@ -101,7 +101,7 @@ std::optional<Blockage> BoxGrowth::build(const VoxelGrid& grid, std::span<const 
   chain.clear();
   voxels_.clear();
   for (std::size_t i = 0; i + 1 < path.size(); ++i) {
-    if (!walk_.append(grid.occupied, path[i].p_grid, path[i + 1].p_grid, voxels_)) {
+    if (!walk_.append(grid.grown, path[i].p_grid, path[i + 1].p_grid, voxels_)) {
       const Vec3& p = path[i].p_grid;
       const Vec3 last = voxels_.empty() ? p : exit_of(voxels_.back(), p, path[i + 1].p_grid);
       return Blockage{path[i].segment, last};
@@ -126,11 +126,11 @@ VoxelBox BoxGrowth::grow(const VoxelGrid& grid, std::size_t begin, std::size_t& 
   VoxelBox box = hull({voxels_[begin], voxels_[begin]}, voxels_[begin]);
   for (end = begin; end + 1 < voxels_.size(); ++end) {
     const VoxelBox more = hull(box, voxels_[end + 1]);
-    if (!box_is_free(grid.occupied, more)) break;
+    if (!box_is_free(grid.grown, more)) break;
     box = more;
   }
   const int reach = int(std::min(1e6, std::ceil(config_.local_box_m / grid.geometry.resolution_m)));
-  const Index3 size = grid.occupied.size();
+  const Index3 size = grid.grown.size();
   const VoxelBox limits{
       {std::max(0, box.lo.x - reach), std::max(0, box.lo.y - reach), std::max(0, box.lo.z - reach)},
       {std::min(size.x, box.hi.x + reach), std::min(size.y, box.hi.y + reach),
@@ -138,7 +138,7 @@ VoxelBox BoxGrowth::grow(const VoxelGrid& grid, std::size_t begin, std::size_t& 
   for (bool grew = true; grew;) {
     grew = false;
     for (int axis = 0; axis < 3; ++axis) {
-      for (const int side : {-1, 1}) grew |= add_layer(grid.occupied, axis, side, limits, box);
+      for (const int side : {-1, 1}) grew |= add_layer(grid.grown, axis, side, limits, box);
     }
   }
   while (end + 1 < voxels_.size() && contains(box, voxels_[end + 1])) ++end;

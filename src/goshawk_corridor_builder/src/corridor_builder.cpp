@@ -1,8 +1,9 @@
 #include "goshawk/corridor_builder/corridor_builder.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 #include <vector>
 
@@ -38,7 +39,7 @@ bool touches_unknown(const VoxelGrid& grid, const Vec3& p) {
                     (corner & 4U) ? 1e-6 : -1e-6);
     const Vec3 f = (p + side).array().floor();
     const Index3 i{int(f.x()), int(f.y()), int(f.z())};
-    if (grid.occupied.contains(i) && grid.occupied.get(i) && !grid.is_known(i)) return true;
+    if (grid.grown.contains(i) && grid.grown.get(i) && !grid.is_known(i)) return true;
   }
   return false;
 }
@@ -60,17 +61,16 @@ class CorridorBuilder::Impl {
  public:
   explicit Impl(const Config& c) : config(c), path_wrapper_(c), box_growth_(c) {}
 
-  Status build(const VoxelGrid& grid, const RawObstacles* raw, std::span<const Vec3> path,
-               Corridor& corridor);
+  Status build(const VoxelGrid& grid, std::span<const Vec3> path, Corridor& corridor);
 
   Config config;
 
  private:
   Status check_grid(const VoxelGrid& grid);
-  Status check_raw(const VoxelGrid& grid, const RawObstacles* raw) const;
+  Status check_raw(const VoxelGrid& grid) const;
   Status check_path(const VoxelGrid& grid, std::span<const Vec3> path) const;
   Status check_room(std::span<const Vec3> path) const;
-  ObstacleLayers layers(const VoxelGrid& grid, const RawObstacles* raw) const;
+  ObstacleLayers layers(const VoxelGrid& grid) const;
   void improve(double resolution_m);
   void write(Corridor& corridor) const;
   Error blocked(const VoxelGrid& grid, std::span<const Vec3> path, const Blockage& at) const;
@@ -82,16 +82,16 @@ class CorridorBuilder::Impl {
   Chain chain_;
 };
 
-Status CorridorBuilder::Impl::build(const VoxelGrid& grid, const RawObstacles* raw,
-                                    std::span<const Vec3> path, Corridor& corridor) {
+Status CorridorBuilder::Impl::build(const VoxelGrid& grid, std::span<const Vec3> path,
+                                    Corridor& corridor) {
   if (auto status = check_grid(grid); !status) return status;
-  if (auto status = check_raw(grid, raw); !status) return status;
+  if (auto status = check_raw(grid); !status) return status;
   if (auto status = check_path(grid, path); !status) return status;
   split_path(grid.geometry, path, config.max_segment_m, points_);
   const auto blockage =
       config.generator == Generator::box
           ? box_growth_.build(grid, points_, margins_, chain_)
-          : path_wrapper_.wrap(grid, layers(grid, raw), margins_, points_, chain_);
+          : path_wrapper_.wrap(grid, layers(grid), margins_, points_, chain_);
   if (blockage) return blocked(grid, path, *blockage);
   improve(grid.geometry.resolution_m);
   if (auto status = check_room(path); !status) return status;
@@ -100,10 +100,14 @@ Status CorridorBuilder::Impl::build(const VoxelGrid& grid, const RawObstacles* r
   return success();
 }
 
-ObstacleLayers CorridorBuilder::Impl::layers(const VoxelGrid& grid, const RawObstacles* raw) const {
-  if (config.margin != Margin::sphere) return {{{{&grid.occupied, 0.0}, {}}}, grid.geometry};
-  const double radius = raw->radius_m / grid.geometry.resolution_m;
-  return {{{{raw->occupied, radius}, {raw->forbidden, 0.0}}}, grid.geometry};
+ObstacleLayers CorridorBuilder::Impl::layers(const VoxelGrid& grid) const {
+  if (config.margin != Margin::sphere) {
+    return {{{{{.set = &grid.grown}, 0.0}, {}}}, grid.geometry};
+  }
+  const BitGrid* known = grid.unknown_is_occupied && !grid.known.empty() ? &grid.known : nullptr;
+  const double radius = grid.inflation_m / grid.geometry.resolution_m;
+  if (grid.unknown_grows) return {{{{{&grid.raw, known}, radius}, {}}}, grid.geometry};
+  return {{{{{.set = &grid.raw}, radius}, {{.known = known}, 0.0}}}, grid.geometry};
 }
 
 void CorridorBuilder::Impl::improve(double resolution_m) {
@@ -138,25 +142,19 @@ Status CorridorBuilder::Impl::check_grid(const VoxelGrid& grid) {
                   " is too far away for exact planes: choose a map frame nearer to the map");
 }
 
-Status CorridorBuilder::Impl::check_raw(const VoxelGrid& grid, const RawObstacles* raw) const {
+Status CorridorBuilder::Impl::check_raw(const VoxelGrid& grid) const {
   if (config.margin != Margin::sphere || config.generator == Generator::box) return success();
-  if (raw == nullptr || raw->occupied == nullptr) {
+  if (grid.raw.empty()) {
     return fail(ErrorCode::invalid_input,
-                "margin 'sphere' needs the map before obstacles were grown: give it, or choose "
-                "margin 'grown_grid'");
+                "margin 'sphere' needs the obstacles as measured, which this map does not bring: "
+                "set publish_raw of map_server, or use margin 'grown_grid'");
   }
-  const Index3 size = grid.geometry.size;
-  if (!(raw->occupied->size() == size) ||
-      (raw->forbidden != nullptr && !(raw->forbidden->size() == size))) {
-    return fail(ErrorCode::invalid_input, "the map before growing has " +
-                                              to_text(raw->occupied->size()) +
-                                              " voxels, the grown one " + to_text(size));
-  }
-  const double radius = raw->radius_m / grid.geometry.resolution_m;
+  const double radius = grid.inflation_m / grid.geometry.resolution_m;
   if (radius >= 0.0 && radius <= kMostRadius) return success();
-  return fail(ErrorCode::invalid_input, "the vehicle's radius is " + number_text(raw->radius_m) +
-                                            " m: it must be at least 0 and at most " +
-                                            number_text(kMostRadius) + " voxels");
+  return fail(ErrorCode::invalid_input,
+              fmt::format("the map's obstacles were inflated by {:.3g} m: for margin 'sphere' it "
+                          "must be at least 0 and at most {:g} voxels",
+                          grid.inflation_m, kMostRadius));
 }
 
 Status CorridorBuilder::Impl::check_path(const VoxelGrid& grid, std::span<const Vec3> path) const {
@@ -235,18 +233,16 @@ CorridorBuilder::CorridorBuilder(CorridorBuilder&&) noexcept = default;
 CorridorBuilder& CorridorBuilder::operator=(CorridorBuilder&&) noexcept = default;
 CorridorBuilder::~CorridorBuilder() = default;
 
-Result<Corridor> CorridorBuilder::build(const VoxelGrid& grid, std::span<const Vec3> waypoints_map,
-                                        const RawObstacles* raw) {
+Result<Corridor> CorridorBuilder::build(const VoxelGrid& grid,
+                                        std::span<const Vec3> waypoints_map) {
   Corridor corridor;
-  if (auto status = impl_->build(grid, raw, waypoints_map, corridor); !status) {
-    return status.error();
-  }
+  if (auto status = impl_->build(grid, waypoints_map, corridor); !status) return status.error();
   return corridor;
 }
 
 Status CorridorBuilder::build(const VoxelGrid& grid, std::span<const Vec3> waypoints_map,
-                              const RawObstacles* raw, Corridor& corridor) {
-  return impl_->build(grid, raw, waypoints_map, corridor);
+                              Corridor& corridor) {
+  return impl_->build(grid, waypoints_map, corridor);
 }
 
 std::string_view CorridorBuilder::implementation() const {

@@ -19,6 +19,32 @@ Word gathered(const Word* row, int x0, int x1) {
   return count < kWordBits ? word & ~(~Word{0} << count) : word;
 }
 
+// visit(row of the slab, its voxels as one word) for each row of a layer.
+template <typename Visit>
+void for_gathered(const BitGrid& bits, const VoxelBox& slab, int z, const Visit& visit) {
+  const std::size_t stride = bits.words_per_row();
+  for (int y = slab.lo.y; y < slab.hi.y;) {
+    const Word* row = bits.row(y, z);
+    // The rows of a chunk lie one behind the other.
+    const int end = std::min(slab.hi.y, (y | (BitGrid::kChunkSide - 1)) + 1);
+    for (; y < end; ++y, row += stride) {
+      visit(std::size_t(y - slab.lo.y), gathered(row, slab.lo.x, slab.hi.x));
+    }
+  }
+}
+
+void gather_layer(const ObstacleVoxels& voxels, const VoxelBox& slab, int z, Word* layer) {
+  if (voxels.set != nullptr) {
+    for_gathered(*voxels.set, slab, z, [&](std::size_t y, Word word) { layer[y] = word; });
+  } else {
+    std::fill_n(layer, slab.hi.y - slab.lo.y, Word{0});
+  }
+  if (voxels.known == nullptr) return;
+  const Word used = ~Word{0} >> (kWordBits - (slab.hi.x - slab.lo.x));
+  for_gathered(*voxels.known, slab, z,
+               [&](std::size_t y, Word word) { layer[y] |= ~word & used; });
+}
+
 struct Run {
   int begin, end;
   Word mask;
@@ -66,28 +92,26 @@ void BoxSet::resize(std::size_t n) {
   radius.resize(n);
 }
 
-void ObstacleMerger::collect(const BitGrid& occupied, const VoxelBox& region, Index3 base,
+void ObstacleMerger::collect(const ObstacleVoxels& voxels, const VoxelBox& region, Index3 base,
                              double radius, BoxSet& boxes) {
   VoxelBox slab = region;
   for (; slab.lo.x < region.hi.x; slab.lo.x = slab.hi.x) {
     slab.hi.x = std::min(slab.lo.x + kWordBits, region.hi.x);
-    gather(occupied, slab);
+    gather(voxels, slab);
     const Index3 offset = slab.lo - base;
     merge(Vec3(offset.x, offset.y, offset.z), radius, boxes);
   }
 }
 
 // A layer that equals the one below is left out.
-void ObstacleMerger::gather(const BitGrid& occupied, const VoxelBox& slab) {
+void ObstacleMerger::gather(const ObstacleVoxels& voxels, const VoxelBox& slab) {
   rows_ = slab.hi.y - slab.lo.y;
   const auto n = std::size_t(rows_);
   words_.resize(n * std::size_t(slab.hi.z - slab.lo.z));
   heights_.clear();
   Word* layer = words_.data();
-  const std::size_t stride = occupied.words_per_row();
   for (int z = slab.lo.z; z < slab.hi.z; ++z) {
-    const Word* row = occupied.row(slab.lo.y, z);
-    for (std::size_t y = 0; y < n; ++y) layer[y] = gathered(row + y * stride, slab.lo.x, slab.hi.x);
+    gather_layer(voxels, slab, z, layer);
     if (!heights_.empty() && std::equal(layer, layer + n, layer - n)) continue;
     heights_.push_back(z - slab.lo.z);
     layer += n;

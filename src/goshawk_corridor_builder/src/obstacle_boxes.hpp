@@ -14,6 +14,15 @@ struct VoxelBox {
   Index3 hi;
 };
 
+/// The voxels to keep out of: those set in one grid, and those not set in another of the same size
+/// (what is not known). Either may be missing.
+struct ObstacleVoxels {
+  const BitGrid* set = nullptr;
+  const BitGrid* known = nullptr;
+
+  bool empty() const { return set == nullptr && known == nullptr; }
+};
+
 /// Obstacles whose boxes have whole-numbered corners, one array a coordinate so that a plane is
 /// tested against all of them in a few vector instructions. Voxel edges.
 struct BoxSet {
@@ -32,22 +41,22 @@ struct BoxSet {
   void resize(std::size_t n);
 };
 
-/// Merges the set voxels of a region into boxes: the longest run along x that holds a voxel is
-/// widened along y, then along z, as far as all of it stays set. Every set voxel is in a box, and
-/// no clear one is in any; boxes may overlap, which makes them fewer. Rows are read and compared 64
+/// Merges the obstacle voxels of a region into boxes: the longest run along x that holds a voxel is
+/// widened along y, then along z, as far as all of it is obstacles. Each of them is in a box, and
+/// no free voxel is in any; boxes may overlap, which makes them fewer. Rows are read and compared 64
 /// voxels at a time (wider regions are merged in slabs of 64 voxels), and layers that equal the one
 /// below cost only their comparison.
 class ObstacleMerger {
  public:
   /// Appends to `boxes`, relative to the voxel corner `base`.
   /// @param region inside the grid @param radius of the boxes' sphere [voxel edges]
-  void collect(const BitGrid& occupied, const VoxelBox& region, Index3 base, double radius,
+  void collect(const ObstacleVoxels& voxels, const VoxelBox& region, Index3 base, double radius,
                BoxSet& boxes);
 
  private:
   using Word = BitGrid::Word;
 
-  void gather(const BitGrid& occupied, const VoxelBox& slab);
+  void gather(const ObstacleVoxels& voxels, const VoxelBox& slab);
   void merge(const Vec3& offset, double radius, BoxSet& boxes);
   bool layer_holds(Word mask, int y0, int y1, int z) const;
   void clear(Word mask, int y0, int y1, int z0, int z1);

@@ -61,7 +61,7 @@ std::optional<Blockage> PathWrapper::wrap(const VoxelGrid& grown, const Obstacle
   map_ = &map;
   margins_ = margins;
   points_ = &points;
-  measure_rooms(grown.occupied, points);
+  measure_rooms(grown.grown, points);
   chain.clear();
   chain.joints_map.push_back(points.front().p_map);
   for (std::size_t i = 0; i + 1 < points.size();) {
@@ -173,7 +173,7 @@ bool PathWrapper::walk(std::size_t i) {
     voxels_.push_back({int(f.x()), int(f.y()), int(f.z())});
   }
   const Vec3& goal = (*points_)[i + 1].given_grid;
-  if (!walk_.append(grown_->occupied, p.given_grid, goal, voxels_)) return false;
+  if (!walk_.append(grown_->grown, p.given_grid, goal, voxels_)) return false;
   centres_.clear();
   for (const Index3& v : voxels_) centres_.push_back(centre(v) - segment_polytope_.base());
   return true;

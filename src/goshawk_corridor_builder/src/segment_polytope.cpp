@@ -100,10 +100,10 @@ bool SegmentPolytope::find_thin(const Segment& segment) {
 // Obstacles beyond the local box may reach into it by their sphere.
 void SegmentPolytope::collect(const ObstacleLayers& map, const VoxelBox& local) {
   boxes_.clear();
-  for (const auto& [occupied, radius] : map.layers) {
-    if (occupied == nullptr) continue;
+  for (const auto& [voxels, radius] : map.layers) {
+    if (voxels.empty()) continue;
     const int beyond = int(std::min(1e6, std::ceil(radius)));
-    merger_.collect(*occupied, widened(local, beyond, map.geometry.size), local.lo, radius, boxes_);
+    merger_.collect(voxels, widened(local, beyond, map.geometry.size), local.lo, radius, boxes_);
   }
 }
 

@@ -12,14 +12,13 @@
 
 namespace goshawk::corridor_builder {
 
-/// What polytopes keep out of: the set voxels of one or two bit grids of the same size, each with a
-/// sphere swept over its voxels.
+/// What polytopes keep out of: one or two sets of voxels, each with a sphere swept over it.
 struct ObstacleLayers {
   struct Layer {
-    const BitGrid* occupied = nullptr;
+    ObstacleVoxels voxels;
     double radius = 0.0;  // [voxel edges]
   };
-  std::array<Layer, 2> layers;  // a null one is not there
+  std::array<Layer, 2> layers;  // an empty one is not there
   GridGeometry geometry;
 };
 

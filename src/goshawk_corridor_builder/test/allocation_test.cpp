@@ -27,9 +27,8 @@ TEST(CorridorBuilder, AllocatesNothingInARepeatedQuery) {
        {Config{}, Config{.generator = Generator::box}, Config{.margin = Margin::sphere},
         Config{.growth_passes = 2, .max_faces = 8}, Config{.bend_path = false}}) {
     CorridorBuilder builder = std::move(CorridorBuilder::create(config)).value();
-    const VoxelGrid grid = test_support::boxes_and_pillars({30, 40, 20}, 0.2, 0.4, 0.2, 7);
-    const BitGrid nothing(grid.geometry.size, true);
-    const RawObstacles raw{&nothing, 0.2, &grid.occupied};
+    VoxelGrid grid = test_support::boxes_and_pillars({30, 40, 20}, 0.2, 0.4, 0.2, 7);
+    grid.raw = grid.grown;  // as if nothing had been inflated
     Random random(41);
     Corridor corridor;
     int queries = 0;
@@ -37,10 +36,10 @@ TEST(CorridorBuilder, AllocatesNothingInARepeatedQuery) {
       const auto path = test_support::random_free_path(grid, 4, 4.0, random);
       if (path.empty()) continue;
       // Twice: pieces of working memory change places, and each grows when it is first needed.
-      ASSERT_TRUE(builder.build(grid, path, &raw, corridor).ok());
-      ASSERT_TRUE(builder.build(grid, path, &raw, corridor).ok());
+      ASSERT_TRUE(builder.build(grid, path, corridor).ok());
+      ASSERT_TRUE(builder.build(grid, path, corridor).ok());
       const long before = allocations;
-      ASSERT_TRUE(builder.build(grid, path, &raw, corridor).ok());
+      ASSERT_TRUE(builder.build(grid, path, corridor).ok());
       EXPECT_EQ(allocations, before) << to_word(config.generator) << ", " << to_word(config.margin);
       ++queries;
     }

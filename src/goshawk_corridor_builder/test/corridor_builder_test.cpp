@@ -158,7 +158,7 @@ TEST(CorridorBuilder, FollowsATunnelOfOneVoxelWithHalfAVoxelAtEveryTurn) {
   std::vector<Vec3> path;
   for (int k = 1; k < 10; ++k) {  // a staircase, one voxel along each axis in turn
     for (const Index3 i : {Index3{k, k, k}, Index3{k + 1, k, k}, Index3{k + 1, k + 1, k}}) {
-      grid.occupied.set(i, false);
+      grid.grown.set(i, false);
       path.push_back(grid.geometry.center(i));
     }
   }

@@ -51,7 +51,7 @@ TEST(ObstacleMerger, CoversEveryBlockedVoxelAndNoFreeOne) {
     region.hi.x = region.lo.x + 1 + random.below(size.x - region.lo.x);
     region.hi.y = region.lo.y + 1 + random.below(size.y - region.lo.y);
     boxes.clear();
-    merger.collect(grid, region, region.lo, 0.0, boxes);
+    merger.collect({&grid, nullptr}, region, region.lo, 0.0, boxes);
     BitGrid covered(size, true);
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       for (int z = int(boxes.lo[2][i]); z < int(boxes.hi[2][i]); ++z) {

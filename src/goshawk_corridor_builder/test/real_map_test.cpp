@@ -39,7 +39,7 @@ VoxelGrid load(const std::string& file) {
     test_support::fill(grid, {int(lo.x()), int(lo.y()), int(lo.z())},
                        {int(hi.x()), int(hi.y()), int(hi.z())});
   }
-  grid.occupied = inflate(grid.occupied, r, r).value();
+  grid.grown = inflate(grid.grown, r, r).value();
   return grid;
 }
 

@@ -1,9 +1,10 @@
-// The margin `sphere`: polytopes keep a radius from the map before it was grown.
+// The margin `sphere`: polytopes keep a radius from the obstacles as measured.
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 
+#include "goshawk/core/grid_update.hpp"
 #include "goshawk/core/inflation.hpp"
 #include "goshawk/corridor_builder/corridor_builder.hpp"
 #include "support/corridor_checker.hpp"
@@ -14,33 +15,36 @@ namespace {
 
 using ::testing::HasSubstr;
 
-struct Scene {
-  BitGrid raw;
-  VoxelGrid grown;
-  double radius_m = 0.2;
-
-  RawObstacles obstacles() const { return {&raw, radius_m, nullptr}; }
-};
-
-Scene random_scene(int kind, Random& random) {
+VoxelGrid random_scene(int kind, Random& random) {
   const double resolution_m = random.chance(0.5) ? 0.2 : random.uniform(0.05, 0.5);
   const Index3 size{16 + random.below(40), 16 + random.below(30), 6 + random.below(16)};
-  Scene scene;
-  scene.radius_m = resolution_m * (random.chance(0.5) ? 1.0 : random.uniform(0.2, 2.5));
-  scene.grown = test_support::empty_world(
+  VoxelGrid scene = test_support::empty_world(
       size, resolution_m, Vec3(random.uniform(-50, 50), random.uniform(-50, 50), 0));
-  if (kind == 0) test_support::add_noise(scene.grown, random.uniform(0.0, 0.02), random);
+  scene.inflation_m = resolution_m * (random.chance(0.5) ? 1.0 : random.uniform(0.2, 2.5));
+  if (kind == 0) test_support::add_noise(scene, random.uniform(0.0, 0.02), random);
   for (int k = 0; kind > 0 && k < 12; ++k) {
     const Index3 lo{random.below(size.x), random.below(size.y),
                     kind == 1 ? random.below(size.z) : 0};
-    test_support::fill(scene.grown, lo,
+    test_support::fill(scene, lo,
                        {lo.x + 1 + random.below(3), lo.y + 1 + random.below(3),
                         kind == 1 ? lo.z + 1 + random.below(6) : size.z});
   }
-  scene.raw = scene.grown.occupied;
-  scene.grown.occupied = inflate(scene.raw, scene.radius_m, resolution_m).value();
-  scene.grown.inflation_m = scene.radius_m;
+  scene.raw = scene.grown;
+  scene.grown = inflate(scene.raw, scene.inflation_m, resolution_m).value();
   return scene;
+}
+
+// The same map as one that was measured except for a box, which counts as an obstacle.
+void forget(VoxelGrid& scene, Index3 lo, Index3 hi, bool grows) {
+  VoxelGrid unknown = test_support::empty_world(scene.geometry.size, 0.2);
+  test_support::fill(unknown, lo, hi);
+  scene.known = BitGrid(scene.geometry.size, false, true);
+  for (int z = lo.z; z < hi.z; ++z) {
+    for (int y = lo.y; y < hi.y; ++y) scene.known.set_run(lo.x, hi.x, y, z, false);
+  }
+  scene.unknown_is_occupied = true;
+  scene.unknown_grows = grows;
+  scene.grown = grows ? inflate(unknown.grown, scene.inflation_m, 0.2).value() : unknown.grown;
 }
 
 CorridorBuilder sphere_builder() {
@@ -69,24 +73,23 @@ TEST(SphereMargin, KeepsTheRadiusFromEveryRawVoxelAndHoldsThePath) {
   Random random(31);
   int segments = 0, narrow = 0;
   for (int w = 0; w < 90; ++w) {
-    const Scene scene = random_scene(w % 3, random);
-    const RawObstacles raw = scene.obstacles();
+    const VoxelGrid scene = random_scene(w % 3, random);
     for (int k = 0; k < 12; ++k) {
-      const auto path = test_support::random_free_path(scene.grown, 3, 5.0, random);
+      const auto path = test_support::random_free_path(scene, 3, 5.0, random);
       if (path.empty()) continue;
-      const auto corridor = builder.build(scene.grown, path, &raw);
+      const auto corridor = builder.build(scene, path);
       ASSERT_TRUE(corridor.ok()) << corridor.error().message;
       ASSERT_TRUE(corridor->check().ok()) << corridor->check().error().message;
       EXPECT_EQ(corridor->waypoints_map.front(), path.front());
       EXPECT_EQ(corridor->waypoints_map.back(), path.back());
       for (const Polytope& polytope : corridor->polytopes) {
         ASSERT_EQ(
-            test_support::sphere_faults(polytope, scene.raw, scene.grown.geometry, scene.radius_m),
+            test_support::sphere_faults(polytope, scene.raw, scene.geometry, scene.inflation_m),
             "")
             << "world " << w << ", path " << k;
       }
       for (const Ball& ball : corridor->overlaps) {
-        narrow += ball.radius_m < (0.5 - 1e-5) * scene.grown.geometry.resolution_m;
+        narrow += ball.radius_m < (0.5 - 1e-5) * scene.geometry.resolution_m;
       }
       segments += int(path.size()) - 1;
     }
@@ -100,50 +103,68 @@ TEST(SphereMargin, TheCheckerSeesPlanesThatAreAMicrometreTooFarOut) {
   Random random(32);
   int seen = 0;
   for (int k = 0; k < 10; ++k) {
-    const Scene scene = random_scene(1 + k % 2, random);
-    const RawObstacles raw = scene.obstacles();
-    const auto path = test_support::random_free_path(scene.grown, 2, 3.0, random);
+    const VoxelGrid scene = random_scene(1 + k % 2, random);
+    const auto path = test_support::random_free_path(scene, 2, 3.0, random);
     if (path.empty()) continue;
-    auto corridor = builder.build(scene.grown, path, &raw);
+    auto corridor = builder.build(scene, path);
     ASSERT_TRUE(corridor.ok());
     Polytope& polytope = corridor->polytopes[0];
     for (HalfSpace& face : polytope.half_spaces) face.offset_m += 1e-6;
-    seen += !test_support::sphere_faults(polytope, scene.raw, scene.grown.geometry, scene.radius_m)
+    seen += !test_support::sphere_faults(polytope, scene.raw, scene.geometry, scene.inflation_m)
                  .empty();
   }
   EXPECT_GT(seen, 5);
 }
 
-TEST(SphereMargin, KeepsTheCentreOutOfForbiddenVoxelsWithoutARadius) {
-  Scene scene;
-  scene.grown = test_support::empty_world({20, 20, 10}, 0.2);
-  scene.raw = scene.grown.occupied;
-  VoxelGrid unknown = scene.grown;
-  test_support::fill(unknown, {10, 0, 0}, {20, 20, 10});
-  scene.grown.occupied = unknown.occupied;
-  const RawObstacles raw{&scene.raw, 0.2, &unknown.occupied};
+TEST(SphereMargin, KeepsTheCentreOutOfUnknownSpaceAndTheSphereIfThatWasInflated) {
   const std::vector<Vec3> path{{0.5, 0.5, 0.5}, {1.5, 3.5, 1.5}};
-  const auto corridor = sphere_builder().build(scene.grown, path, &raw);
-  ASSERT_TRUE(corridor.ok()) << corridor.error().message;
-  EXPECT_EQ(test_support::faults_of(*corridor, scene.grown, path), "");
-  EXPECT_NEAR(test_support::volume_of(corridor->polytopes[0]), 2.0 * 4.0 * 2.0, 1e-3);
+  for (const bool grows : {false, true}) {
+    VoxelGrid scene = test_support::empty_world({20, 20, 10}, 0.2);
+    scene.raw = scene.grown;
+    scene.inflation_m = 0.2;
+    forget(scene, {10, 0, 0}, {20, 20, 10}, grows);
+    const auto corridor = sphere_builder().build(scene, path);
+    ASSERT_TRUE(corridor.ok()) << corridor.error().message;
+    EXPECT_EQ(test_support::faults_of(*corridor, scene, path), "");
+    const double width_m = grows ? 1.8 : 2.0;
+    EXPECT_NEAR(test_support::volume_of(corridor->polytopes[0]), width_m * 4.0 * 2.0, 1e-3);
+  }
 }
 
-TEST(SphereMargin, RefusesAMapThatIsNotThereOrDoesNotFit) {
-  Random random(33);
-  const Scene scene = random_scene(1, random);
-  const std::vector<Vec3> path = test_support::random_free_path(scene.grown, 1, 1.0, random);
-  ASSERT_FALSE(path.empty());
-  const BitGrid small({2, 2, 2}, true);
-  const RawObstacles none, wrong{&small, 0.2, nullptr}, negative{&scene.raw, -0.2, nullptr},
-      endless{&scene.raw, 1e9, nullptr}, nan{&scene.raw, std::nan(""), nullptr};
-  CorridorBuilder builder = sphere_builder();
-  EXPECT_THAT(builder.build(scene.grown, path).error().message, HasSubstr("before obstacles"));
-  for (const RawObstacles* raw : {&none, &wrong, &negative, &endless, &nan}) {
-    EXPECT_EQ(builder.build(scene.grown, path, raw).code(), ErrorCode::invalid_input);
+TEST(SphereMargin, SeesAnUpdateOfTheMap) {
+  VoxelGrid scene = test_support::empty_world({20, 20, 10}, 0.2);
+  scene.raw = scene.grown;
+  scene.known = BitGrid(scene.geometry.size, false, true);
+  scene.inflation_m = 0.2;
+  GridUpdate wall{0, 1, {}, {brick_of(scene, {0, 0, 0}), brick_of(scene, {0, 1, 0})}};
+  for (Brick& brick : wall.bricks) {
+    brick.grown.fill(0b111U << 11);
+    brick.raw->fill(0b1U << 12);
   }
-  const RawObstacles larger{&scene.raw, 30.0 * scene.grown.geometry.resolution_m, nullptr};
-  EXPECT_EQ(builder.build(scene.grown, path, &larger).code(), ErrorCode::segment_blocked);
+  ASSERT_TRUE(apply(scene, wall));
+  const std::vector<Vec3> path{{0.5, 0.5, 0.5}, {1.5, 2.5, 0.5}};
+  const auto corridor = sphere_builder().build(scene, path);
+  ASSERT_TRUE(corridor.ok()) << corridor.error().message;
+  EXPECT_EQ(test_support::sphere_faults(corridor->polytopes[0], scene.raw, scene.geometry, 0.2),
+            "");
+  EXPECT_LT(test_support::volume_of(corridor->polytopes[0]), 2.6 * 4.0 * 2.0);
+}
+
+TEST(SphereMargin, RefusesAMapWithoutRawVoxelsOrARadiusThatCannotBe) {
+  Random random(33);
+  VoxelGrid scene = random_scene(1, random);
+  const std::vector<Vec3> path = test_support::random_free_path(scene, 1, 1.0, random);
+  ASSERT_FALSE(path.empty());
+  CorridorBuilder builder = sphere_builder();
+  for (const double radius_m : {-0.2, 1e9, std::nan("")}) {
+    scene.inflation_m = radius_m;
+    EXPECT_EQ(builder.build(scene, path).code(), ErrorCode::invalid_input);
+  }
+  scene.inflation_m = 30.0 * scene.geometry.resolution_m;
+  EXPECT_EQ(builder.build(scene, path).code(), ErrorCode::segment_blocked);
+  scene.raw = {};
+  EXPECT_EQ(builder.build(scene, path).code(), ErrorCode::invalid_input);
+  EXPECT_THAT(builder.build(scene, path).error().message, HasSubstr("publish_raw"));
 }
 
 }  // namespace

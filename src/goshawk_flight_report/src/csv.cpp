@@ -32,9 +32,7 @@ void append_trajectory(std::string& text, const Leg& leg, std::size_t number, in
     for (const Vec3& v : {state.position, state.velocity, state.acceleration, state.jerk}) {
       append_columns(text, v);
     }
-    text += ',';
-    append(text, leg.yaw_at(t_s));
-    text += '\n';
+    append(text, ",{}\n", leg.yaw_at(t_s));
   }
 }
 

@@ -33,7 +33,7 @@ class Seen {
   /// Occupied because it was measured so, not because nobody looked.
   bool blocked(int u, int v, int w) const {
     const Index3 i = index(u, v, w);
-    return grid_.occupied.test(i) && grid_.is_known(i);
+    return grid_.grown.test(i) && grid_.is_known(i);
   }
 
  private:
@@ -123,7 +123,7 @@ ObstacleImage obstacle_image(const VoxelGrid* obstacles, const VoxelGrid* grown,
         const double depth = cell[view.w] = nearest(guide, view, cell)[view.w];
         near = seen.range({depth - half_depth_m, depth + half_depth_m}, view.w);
         const auto i = grown != nullptr ? grown->geometry.index_of(cell) : std::nullopt;
-        grown_there = i && grown->occupied.test(*i) && grown->is_known(*i);
+        grown_there = i && grown->grown.test(*i) && grown->is_known(*i);
       }
       result.image.pixels.push_back(packed(color_of(seen, iu, iv, near, grown_there)));
     }

@@ -81,7 +81,7 @@ Json to_json(const VoxelGrid* grid) {
   return {{"origin", to_json(g.origin_map)},
           {"resolution", g.resolution_m},
           {"size", {g.size.x, g.size.y, g.size.z}},
-          {"runs", base64(runs_of(grid->occupied))}};
+          {"runs", base64(runs_of(grid->grown))}};
 }
 
 Json to_json(const Polytope& polytope) {

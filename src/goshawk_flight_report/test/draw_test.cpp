@@ -98,9 +98,9 @@ TEST_F(Draw, EveryPictureHasItsSizeAndItsColors) {
 TEST_F(Draw, ObstaclesAreDarkOnlyAtTheHeightThatIsFlown) {
   VoxelGrid grid;
   grid.geometry = {Vec3::Zero(), 0.1, {60, 60, 30}};
-  grid.occupied = BitGrid(grid.geometry.size, true);
+  grid.grown = BitGrid(grid.geometry.size, true);
   for (int z = 0; z < 15; ++z) {  // a box up to z = 1.5 m
-    for (int y = 20; y < 40; ++y) grid.occupied.set_run(20, 40, y, z, true);
+    for (int y = 20; y < 40; ++y) grid.grown.set_run(20, 40, y, z, true);
   }
   const auto flying_at = [&](double z_m) {
     Flight flight;

@@ -48,9 +48,9 @@ TEST_F(Page, HoldsTheFlightInPlaceOfTheMark) {
 TEST_F(Page, WritesTheMapAsRuns) {
   VoxelGrid grid;
   grid.geometry = {Vec3::Zero(), 0.5, {3, 2, 1}};
-  grid.occupied = BitGrid({3, 2, 1}, true);
-  grid.occupied.set({2, 0, 0}, true);
-  grid.occupied.set({0, 1, 0}, true);
+  grid.grown = BitGrid({3, 2, 1}, true);
+  grid.grown.set({2, 0, 0}, true);
+  grid.grown.set({0, 1, 0}, true);
   Flight flight;
   flight.obstacles = &grid;
   ASSERT_TRUE(write_flight_page(flight, page(), file()));

@@ -17,11 +17,11 @@ struct SampleFlight {
 
   explicit SampleFlight(Index3 size = {40, 30, 20}, double resolution_m = 0.2, int columns = 25) {
     obstacles.geometry = {Vec3::Zero(), resolution_m, size};
-    obstacles.occupied = BitGrid(size, true);
+    obstacles.grown = BitGrid(size, true);
     Random random(4);
     for (int k = 0; k < columns; ++k) add_column(random, size);
     grown = obstacles;
-    grown.occupied = grow(obstacles.occupied);
+    grown.grown = grow(obstacles.grown);
     const Vec3 end = obstacles.geometry.upper_corner_map();
     add_leg({0.1 * end.x(), 0.15 * end.y(), 0.3 * end.z()},
             {0.9 * end.x(), 0.8 * end.y(), 0.6 * end.z()}, 0.5);
@@ -41,7 +41,7 @@ struct SampleFlight {
     const int height = random.chance(0.5) ? size.z : 2 + random.below(size.z / 2);
     for (int z = 0; z < height; ++z) {
       for (int j = y; j < std::min(size.y, y + edge); ++j) {
-        obstacles.occupied.set_run(x, std::min(size.x, x + edge), j, z, true);
+        obstacles.grown.set_run(x, std::min(size.x, x + edge), j, z, true);
       }
     }
   }

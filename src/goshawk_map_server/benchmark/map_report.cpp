@@ -72,11 +72,11 @@ Pieces pieces_of(const VoxelGrid& grid) {
     for (int y = 0; y < n.y; ++y) {
       for (int x = 0; x < n.x; ++x) {
         const Index3 at{x, y, z};
-        if (grid.occupied.get(at)) continue;
+        if (grid.grown.get(at)) continue;
         ++pieces.free;
         pieces.measured_free += grid.known.get(at) ? 1 : 0;
         if (!seen.get(at))
-          pieces.largest = std::max(pieces.largest, flood(grid.occupied, at, seen));
+          pieces.largest = std::max(pieces.largest, flood(grid.grown, at, seen));
       }
     }
   }
@@ -92,13 +92,13 @@ int report(const std::string& path, double inflation_m) {
   }
   const double load_s = watch.lap_s();
   const double load_mb = peak_mb();
-  const auto raw = voxelize(*source->tree);
+  const auto raw = voxelize(*source);
   if (!raw) {
     std::fprintf(stderr, "%s\n", raw.error().message.c_str());
     return 1;
   }
   const double voxelize_s = watch.lap_s();
-  const double layer_mb = double(raw->occupied.words().size_bytes()) / 1048576.0;
+  const double layer_mb = double(raw->occupied.to_words().size() * sizeof(BitGrid::Word)) / 1048576.0;
   const std::int64_t occupied = raw->occupied.count();
   const std::int64_t free = raw->known.count() - occupied;
   std::printf("%s: %s voxels of %g m, %lld occupied, %lld free, one layer %.2f MB\n", path.c_str(),

@@ -1,6 +1,7 @@
 #include <malloc.h>
 
-#include <octomap/OcTree.h>
+#include <fmt/format.h>
+#include <spdlog/logger.h>
 
 #include <optional>
 
@@ -28,7 +29,7 @@ Box box_of(const Config& c) {
           Vec3(c.box_x_max_m, c.box_y_max_m, c.box_z_max_m)};
 }
 
-LiveMap make_map(const Config& config) {
+LiveMap make_map(const Config& config, Node& node) {
   auto map = [&]() -> Result<LiveMap> {
     if (config.map_file.empty()) {
       if (!config.use_box) {
@@ -41,7 +42,9 @@ LiveMap make_map(const Config& config) {
     }
     auto source = load_map(config.map_file, load_options(config));
     if (!source) return source.error();
-    return LiveMap::from_source(*std::move(source), voxelize_options(config), growth(config));
+    for (const std::string& note : source->notes) node.log().warn("{}: {}", config.map_file, note);
+    return LiveMap::from_source(*std::move(source), voxelize_options(config), growth(config),
+                                std::int64_t{config.max_tree_mb} * 1'000'000);
   }();
   if (!map) throw StartupFault(map.error());
   return *std::move(map);
@@ -56,7 +59,7 @@ class MapServerComponent : public Component {
           config_ = c;  // max_range_m of the scans to come
           return success();
         })),
-        map_(make_map(config_)),
+        map_(make_map(config_, node)),
         reporter_(node, StageRole::map_server, "octomap"),
         voxels_(node.advertise<msg::VoxelGrid>("map/voxels", Qos::latched())),
         updates_(
@@ -72,15 +75,12 @@ class MapServerComponent : public Component {
     node.every(kWholeMapPeriod_s, [this] {
       if (changed_) publish_whole();
     });
-    if (config_.publish_raw) {
-      raw_voxels_ = node.advertise<msg::VoxelGrid>("map/voxels/raw", Qos::latched());
-    }
     publish_whole();
     malloc_trim(0);  // what loading and publishing took for a moment; glibc may keep it for ever
     const auto& grid = map_.grid();
-    reporter_.ready("serves " + to_text(grid.geometry.size) + " voxels of " +
-                    std::to_string(grid.geometry.resolution_m) + " m, grown by " +
-                    std::to_string(grid.inflation_m) + " m");
+    reporter_.ready(fmt::format("serves {} voxels of {:.3g} m, obstacles inflated by {:.3g} m",
+                                to_text(grid.geometry.size), grid.geometry.resolution_m,
+                                grid.inflation_m));
   }
 
  private:
@@ -89,28 +89,20 @@ class MapServerComponent : public Component {
     {
       msg::VoxelGrid m;  // freed at once: the writer keeps the bytes for late joiners
       m.header(conversions::make_header(node_.now_ns()));
-      conversions::fill_msg(map_.grid(), m);
+      VoxelGrid published = map_.grid();  // shares its bits
+      if (!config_.publish_raw) published.raw = {};
+      conversions::fill_msg(published, m);
       reporter_.send(voxels_, m);
     }
-    if (raw_voxels_) publish_raw();
-    const std::string bytes = binary_payload(map_.tree());
+    const auto bytes = map_.octomap_payload();
+    if (!bytes) return reporter_.fault(bytes.error());
     octomap_msgs::msg::Octomap m;
     m.header(conversions::make_header(node_.now_ns()));
     m.binary(true);
     m.id("OcTree");
-    m.resolution(map_.tree().getResolution());
-    m.data().assign(bytes.begin(), bytes.end());
+    m.resolution(map_.grid().geometry.resolution_m);
+    m.data().assign(bytes->begin(), bytes->end());
     reporter_.send(octomap_, m);
-  }
-
-  void publish_raw() {
-    const VoxelGrid& grid = map_.grid();
-    msg::VoxelGrid m;
-    m.header(conversions::make_header(node_.now_ns()));
-    conversions::fill_msg(growing_voxels(grid.geometry, map_.raw_occupied(), grid.known,
-                                         map_.growth().unknown, grid.version),
-                          m);
-    reporter_.send(*raw_voxels_, m);
   }
 
   void on_cloud(const sensor_msgs::msg::PointCloud2& m) {
@@ -138,7 +130,10 @@ class MapServerComponent : public Component {
     return points;
   }
 
-  void publish_update(const GridUpdate& update) {
+  void publish_update(GridUpdate& update) {
+    if (!config_.publish_raw) {
+      for (Brick& brick : update.bricks) brick.raw.reset();
+    }
     msg::VoxelGridUpdate m;
     m.header(conversions::make_header(node_.now_ns()));
     conversions::fill_msg(update, m);
@@ -152,7 +147,6 @@ class MapServerComponent : public Component {
   Publisher<msg::VoxelGrid> voxels_;
   Publisher<msg::VoxelGridUpdate> updates_;
   Publisher<octomap_msgs::msg::Octomap> octomap_;
-  std::optional<Publisher<msg::VoxelGrid>> raw_voxels_;  // where it is asked for
   std::optional<RigidBodyState> vehicle_;
   bool changed_ = false;
 };

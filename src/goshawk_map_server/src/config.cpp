@@ -15,6 +15,9 @@ LoadOptions load_options(const Config& config) {
   LoadOptions options;
   options.resolution_m = config.resolution_m;
   options.cloud = config.cloud_meaning;
+  options.frame = config.cloud_frame;
+  options.scale = config.cloud_scale;
+  options.origin_file = {config.cloud_origin_x_m, config.cloud_origin_y_m, config.cloud_origin_z_m};
   options.max_range_m = config.max_range_m;
   options.box = box_of(config);
   options.max_voxels = config.max_voxels;

@@ -2,13 +2,12 @@
 
 #include <octomap/OcTree.h>
 
-#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <new>
 
+#include "cloud_loader.hpp"
 #include "readers.hpp"
-#include "scan.hpp"
 #include "text.hpp"
 
 namespace goshawk::map_server {
@@ -28,9 +27,9 @@ Result<std::string> read_bytes(const std::string& path) {
     return fail(ErrorCode::map_unreadable, "it is not a file: give the path of a map file");
   }
   const std::uintmax_t size = fs::file_size(path, error);
-  if (error) return fail(ErrorCode::map_unreadable, "its size cannot be told: " + error.message());
+  if (error) return fail(ErrorCode::map_unreadable, "its size cannot be read: " + error.message());
   if (size > kMaxFileBytes) {
-    return fail(ErrorCode::map_too_large, "it is larger than 4 GiB: cut it or coarsen it");
+    return fail(ErrorCode::map_too_large, "it is larger than 4 GiB: cut it, or thin it out");
   }
   std::ifstream file(path, std::ios::binary);
   std::string bytes(std::size_t(size), '\0');
@@ -40,84 +39,7 @@ Result<std::string> read_bytes(const std::string& path) {
   return bytes;
 }
 
-Status check(const LoadOptions& options) {
-  const auto positive = [](double v) { return std::isfinite(v) && v > 0.0; };
-  if (!positive(options.resolution_m) || !positive(options.max_range_m) ||
-      !is_finite(options.sensor_origin_map)) {
-    return fail(ErrorCode::invalid_parameter,
-                "a cloud's resolution and range must be finite and above zero, its sensor's "
-                "origin finite");
-  }
-  return success();
-}
-
-// Drops what is not finite or outside the box.
-Points usable(const Points& points, const LoadOptions& options, MapSource& source) {
-  source.points_read = std::int64_t(points.size());
-  Points kept;
-  kept.reserve(points.size());
-  for (const Vec3& p : points) {
-    if (!is_finite(p)) {
-      ++source.points_not_finite;
-    } else if (options.box && ((p.array() < options.box->lower_map.array()).any() ||
-                               (p.array() >= options.box->upper_map.array()).any())) {
-      ++source.points_outside;
-    } else {
-      kept.push_back(p);
-    }
-  }
-  return kept;
-}
-
-Box box_around(const Points& points, double resolution_m) {
-  Box box{points.front(), points.front()};
-  for (const Vec3& p : points) {
-    box.lower_map = box.lower_map.cwiseMin(p);
-    box.upper_map = box.upper_map.cwiseMax(p);
-  }
-  // A point on a face belongs to the upper voxel: the box must reach beyond it.
-  box.upper_map += Vec3::Constant(0.01 * resolution_m);
-  return box;
-}
-
-Result<OcTreePtr> tree_of_points(const Points& points, const LoadOptions& options) {
-  const auto geometry = raster_of(options.box.value_or(box_around(points, options.resolution_m)),
-                                  options.resolution_m, options.max_voxels);
-  if (!geometry) return geometry.error();
-  BitGrid occupied(geometry->size, true);
-  for (const Vec3& p : points) {
-    if (const auto voxel = geometry->index_of(p)) occupied.set(*voxel, true);
-  }
-  if (options.cloud == CloudMeaning::map) return make_octree(*geometry, occupied, {});
-  return make_octree(*geometry, occupied, occupied);
-}
-
-Result<OcTreePtr> tree_of_scan(const Points& points, const LoadOptions& options) {
-  auto tree = std::make_shared<octomap::OcTree>(options.resolution_m);
-  auto inserted = insert_scan(*tree, points, options.sensor_origin_map, options.max_range_m);
-  if (!inserted) return inserted.error();
-  if (tree->size() == 0) return fail(ErrorCode::map_empty, "the scan reaches no voxel");
-  return tree;
-}
-
-Status load_cloud(const Points& all, const LoadOptions& options, MapSource& source) {
-  if (auto status = check(options); !status) return status;
-  const Points points = usable(all, options, source);
-  if (points.empty()) {
-    return fail(ErrorCode::map_empty,
-                "none of its " + std::to_string(source.points_read) + " points can be used: " +
-                    std::to_string(source.points_not_finite) + " are not finite, " +
-                    std::to_string(source.points_outside) + " lie outside the box");
-  }
-  auto tree = options.cloud == CloudMeaning::scan ? tree_of_scan(points, options)
-                                                  : tree_of_points(points, options);
-  if (!tree) return tree.error();
-  source.tree = *tree;
-  return success();
-}
-
 Status load_warframe(const WarframeMap& map, const LoadOptions& options, MapSource& source) {
-  if (auto status = check(options); !status) return status;
   const double res = options.resolution_m;
   const auto geometry = raster_of({Vec3::Zero(), res * Vec3(map.size.x, map.size.y, map.size.z)},
                                   res, options.max_voxels);
@@ -125,9 +47,7 @@ Status load_warframe(const WarframeMap& map, const LoadOptions& options, MapSour
   BitGrid occupied(map.size, true);
   for (const Index3 i : map.occupied) occupied.set(i, true);
   source.points_read = std::int64_t(map.occupied.size());
-  auto tree = make_octree(*geometry, occupied, {});
-  if (!tree) return tree.error();
-  source.tree = *tree;
+  source.voxels = RawVoxels{*geometry, std::move(occupied), BitGrid(map.size, false, true)};
   return success();
 }
 
@@ -137,16 +57,24 @@ Status load_tree(Result<OcTreePtr> tree, MapSource& source) {
   return success();
 }
 
-Status load_bytes(std::string_view bytes, const LoadOptions& options, MapSource& source) {
-  if (bytes.empty()) return malformed("it is empty");
-  if (source.format == "bt") return load_tree(read_bt(bytes), source);
-  if (source.format == "ot") return load_tree(read_ot(bytes), source);
+Status load_text(std::string_view bytes, const LoadOptions& options, MapSource& source) {
+  if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF")) {
+    return malformed("it is UTF-16 text: save it as plain text (UTF-8)");
+  }
+  bytes = without_byte_order_mark(bytes);
   if (source.format == "3dmap") {
     const auto map = read_warframe(bytes);
     return map ? load_warframe(*map, options, source) : Status(map.error());
   }
-  const auto points = source.format == "pcd" ? read_pcd(bytes) : read_ply(bytes);
-  return points ? load_cloud(*points, options, source) : Status(points.error());
+  auto cloud = source.format == "pcd" ? read_pcd(bytes) : read_ply(bytes);
+  return cloud ? load_cloud(*std::move(cloud), options, source) : Status(cloud.error());
+}
+
+Status load_bytes(std::string_view bytes, const LoadOptions& options, MapSource& source) {
+  if (bytes.empty()) return malformed("it is empty");
+  if (source.format == "bt") return load_tree(read_bt(bytes), source);
+  if (source.format == "ot") return load_tree(read_ot(bytes), source);
+  return load_text(bytes, options, source);
 }
 
 Error about(const std::string& path, Error error) {
@@ -168,7 +96,42 @@ Error no_memory() {
               "it does not fit into memory: give a smaller box, or a coarser resolution");
 }
 
+// On the same raster: both origins are multiples of the resolution.
+Index3 steps_between(const GridGeometry& from, const GridGeometry& to) {
+  const Vec3 steps = ((to.origin_map - from.origin_map) / from.resolution_m).array().round().matrix();
+  return {int(steps.x()), int(steps.y()), int(steps.z())};
+}
+
+Result<RawVoxels> cut(const RawVoxels& voxels, const VoxelizeOptions& options) {
+  const auto geometry =
+      raster_of(*options.box, voxels.geometry.resolution_m, options.max_voxels);
+  if (!geometry) return geometry.error();
+  if (*geometry == voxels.geometry) return voxels;
+  const Index3 lower = steps_between(voxels.geometry, *geometry);
+  RawVoxels result{*geometry, BitGrid(geometry->size, true),
+                   voxels.known.window(lower, geometry->size)};
+  const BitGrid occupied = voxels.occupied.window(lower, geometry->size);
+  // What lies outside the voxels read is unknown, and only what is known is occupied.
+  for (int z = 0; z < geometry->size.z; ++z) {
+    for (int y = 0; y < geometry->size.y; ++y) {
+      BitGrid::Word* to = result.occupied.mutable_row(y, z);
+      for (std::size_t w = 0; w < occupied.words_per_row(); ++w) {
+        to[w] |= occupied.row(y, z)[w] & result.known.row(y, z)[w];
+      }
+    }
+  }
+  return result;
+}
+
 }  // namespace
+
+Result<RawVoxels> voxelize(const MapSource& source, const VoxelizeOptions& options) try {
+  if (!source.voxels) return voxelize(*source.tree, options);
+  if (!options.box) return *source.voxels;
+  return cut(*source.voxels, options);
+} catch (const std::bad_alloc&) {
+  return no_memory();
+}
 
 Result<MapSource> load_map_bytes(std::string_view bytes, const std::string& name,
                                  const LoadOptions& options) try {

@@ -1,5 +1,6 @@
 #include "goshawk/map_server/octree.hpp"
 
+#include <fmt/format.h>
 #include <octomap/OcTree.h>
 
 #include <charconv>
@@ -16,6 +17,7 @@ namespace goshawk::map_server {
 namespace {
 
 constexpr double kHalfKeys = 32768.0;  // an OcTree spans 65536 voxels, the origin in the middle
+constexpr double kMostPadding = 8.0;   // bits for a voxel of max_voxels
 
 Error too_large(const std::string& what) {
   return fail(ErrorCode::map_too_large, what);
@@ -43,10 +45,34 @@ Result<std::string> encode(const GridGeometry& geometry, const BitGrid& occupied
     return too_large("the map reaches beyond OctoMap's 32768 voxels from the origin");
   }
   const auto key = [&](double v) { return int(v + kHalfKeys); };
-  std::string payload =
-      encode_bt({key(rounded.x()), key(rounded.y()), key(rounded.z())}, occupied, known);
-  if (payload.empty()) return fail(ErrorCode::map_empty, "the map knows of no voxel");
-  return payload;
+  return encode_bt({key(rounded.x()), key(rounded.y()), key(rounded.z())}, occupied, known);
+}
+
+Error knows_nothing() {
+  return fail(ErrorCode::map_empty, "the map knows of no voxel");
+}
+
+// What glibc's malloc takes: a node, and for an inner one the array of its children.
+std::int64_t tree_bytes(const std::string& payload) {
+  const auto inner = std::int64_t(payload.size() / 2);
+  return 32 * std::int64_t(count_nodes(payload)) + 80 * inner;
+}
+
+Status check_voxels(Index3 n, std::int64_t max_voxels) {
+  const double limit = double(max_voxels);
+  if (double(n.x) * n.y * n.z > limit) {
+    return too_large(fmt::format("the map has {} voxels, more than the limit of {}: give a smaller "
+                                 "box, a coarser resolution or a higher limit",
+                                 to_text(n), max_voxels));
+  }
+  // Rows along x take whole words: a map that is thin in x takes up to 64 times its bits.
+  const double padded = 64.0 * std::ceil(n.x / 64.0) * n.y * n.z;
+  if (padded > kMostPadding * limit) {
+    return too_large(fmt::format("the map has {} voxels in rows of {}, which take {:.0f} MB: give a "
+                                 "smaller box, a coarser resolution or a higher limit",
+                                 to_text(n), n.x, padded / 8e6));
+  }
+  return success();
 }
 
 // OctoMap's own writers chat on stderr, and cut the resolution to six digits.
@@ -85,22 +111,23 @@ Status check_tree_ending(const std::string& path) {
 
 Result<GridGeometry> raster_of(const Box& box, double resolution_m, std::int64_t max_voxels) {
   if (!(std::isfinite(resolution_m) && resolution_m > 0.0)) {
-    return fail(ErrorCode::invalid_parameter, "the map's resolution is " +
-                                                  std::to_string(resolution_m) +
-                                                  " m: it must be finite and above zero");
+    return fail(ErrorCode::invalid_parameter,
+                fmt::format("the map's resolution is {:g} m: it must be finite and above zero",
+                            resolution_m));
   }
   const Vec3 lower = box.lower_map / resolution_m;
   const Vec3 upper = box.upper_map / resolution_m;
   if (!is_finite(lower) || !is_finite(upper) || !(upper.array() > lower.array()).all()) {
     return fail(ErrorCode::invalid_parameter,
-                "the map's box from " + to_text(box.lower_map) + " to " + to_text(box.upper_map) +
-                    " m holds nothing: the upper corner must lie above the lower one, both finite");
+                fmt::format("the map's box from {} to {} m holds nothing: the upper corner must lie "
+                            "above the lower one, both finite",
+                            to_text(box.lower_map), to_text(box.upper_map)));
   }
   if (lower.minCoeff() < -kHalfKeys || upper.maxCoeff() > kHalfKeys) {
-    return too_large("the map reaches from " + to_text(box.lower_map) + " to " +
-                     to_text(box.upper_map) + " m, beyond OctoMap's 32768 voxels of " +
-                     std::to_string(resolution_m) +
-                     " m from the origin: give a smaller box or a coarser resolution");
+    return too_large(fmt::format("the map reaches from {} to {} m, beyond OctoMap's 32768 voxels of "
+                                 "{:g} m from the origin: give a smaller box or a coarser "
+                                 "resolution",
+                                 to_text(box.lower_map), to_text(box.upper_map), resolution_m));
   }
   // A corner on the raster, but for rounding, must not add a layer of voxels.
   const Eigen::Array3d lo = (lower.array() + 1e-6).floor();
@@ -109,19 +136,21 @@ Result<GridGeometry> raster_of(const Box& box, double resolution_m, std::int64_t
   geometry.resolution_m = resolution_m;
   geometry.origin_map = lo.matrix() * resolution_m;
   geometry.size = {int(hi.x() - lo.x()), int(hi.y() - lo.y()), int(hi.z() - lo.z())};
-  const Index3 n = geometry.size;
-  if (std::int64_t{n.x} * n.y > max_voxels / n.z) {
-    return too_large("the map has " + to_text(n) + " voxels, more than the limit of " +
-                     std::to_string(max_voxels) +
-                     ": give a smaller box, a coarser resolution or a higher limit");
-  }
+  if (auto status = check_voxels(geometry.size, max_voxels); !status) return status.error();
   return geometry;
 }
 
 Result<OcTreePtr> make_octree(const GridGeometry& geometry, const BitGrid& occupied,
-                              const BitGrid& known) {
+                              const BitGrid& known, std::int64_t max_bytes) {
   const auto payload = encode(geometry, occupied, known);
   if (!payload) return payload.error();
+  if (payload->empty()) return knows_nothing();
+  if (tree_bytes(*payload) > max_bytes) {
+    return too_large(fmt::format("an OctoMap of {} voxels would take {} MB of memory, more than the "
+                                 "limit of {} MB: give a smaller box or a coarser resolution",
+                                 to_text(geometry.size), tree_bytes(*payload) / 1'000'000,
+                                 max_bytes / 1'000'000));
+  }
   auto tree = std::make_shared<octomap::OcTree>(geometry.resolution_m);
   MemoryStream stream(*payload);
   tree->readBinaryData(stream);
@@ -145,12 +174,18 @@ Status save_voxels(const GridGeometry& geometry, const BitGrid& occupied, const 
   if (lower_case_ending(path) == "bt") {  // needs no tree
     const auto payload = encode(geometry, occupied, known);
     if (!payload) return payload.error();
+    if (payload->empty()) return knows_nothing();
     return write_file(path, header("binary file", count_nodes(*payload), geometry.resolution_m),
                       *payload);
   }
   const auto tree = make_octree(geometry, occupied, known);
   if (!tree) return tree.error();
   return save_octree(**tree, path);
+}
+
+Result<std::string> binary_payload(const GridGeometry& geometry, const BitGrid& occupied,
+                                   const BitGrid& known) {
+  return encode(geometry, occupied, known);
 }
 
 std::string binary_payload(const octomap::OcTree& tree) {

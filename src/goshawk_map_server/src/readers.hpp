@@ -1,5 +1,9 @@
 #pragma once
 
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -14,10 +18,25 @@ namespace goshawk::map_server {
 Result<OcTreePtr> read_bt(std::string_view bytes);
 Result<OcTreePtr> read_ot(std::string_view bytes);
 
-/// The points that a cloud file holds, not finite ones included.
 using Points = std::vector<Vec3>;
-Result<Points> read_pcd(std::string_view bytes);
-Result<Points> read_ply(std::string_view bytes);
+
+/// Where a cloud was taken from, in the file's units.
+struct Viewpoint {
+  Vec3 position = Vec3::Zero();
+  Eigen::Quaternion<double, Eigen::DontAlign> orientation =
+      Eigen::Quaternion<double, Eigen::DontAlign>::Identity();  // unit length
+};
+
+/// What a cloud file holds: points, not finite ones included, and triangles between them.
+struct Cloud {
+  Points points;
+  std::vector<std::array<std::uint32_t, 3>> triangles;  // each below points.size()
+  std::optional<Viewpoint> viewpoint;                   // only if it is not the origin
+  bool single_precision = false;                        // coordinates are 32-bit floats
+};
+Result<Cloud> read_pcd(std::string_view bytes);
+/// Faces, strips and edges become triangles.
+Result<Cloud> read_ply(std::string_view bytes);
 
 struct WarframeMap {
   Index3 size;

@@ -28,47 +28,26 @@ Window window_around(Index3 brick, int reach, Index3 grid) {
               lo};
 }
 
-BitGrid growing_bits(const RawView& raw, const Window& window, UnknownPolicy policy) {
+BitGrid growing_bits(const VoxelGrid& grid, const Window& window, UnknownPolicy policy) {
   BitGrid local(window.size, true);
   const std::size_t word0 = std::size_t(window.lower.x) / 64;
   for (int z = 0; z < window.size.z; ++z) {
     for (int y = 0; y < window.size.y; ++y) {
-      const Word* occupied = raw.occupied.row(y + window.lower.y, z + window.lower.z) + word0;
-      const Word* known = raw.known.row(y + window.lower.y, z + window.lower.z) + word0;
+      const Word* raw = grid.raw.row(y + window.lower.y, z + window.lower.z) + word0;
+      const Word* known = grid.known.row(y + window.lower.y, z + window.lower.z) + word0;
       Word* to = local.mutable_row(y, z);
       for (std::size_t i = 0; i < local.words_per_row(); ++i) {
-        to[i] = growing_word(occupied[i], known[i], policy);
+        to[i] = growing_word(raw[i], known[i], policy);
       }
     }
   }
   return local;
 }
 
-// visit(word number in the brick, y, z) for each row of the brick that the grid has
-template <typename Visit>
-void for_rows(Index3 brick, Index3 grid, Visit&& visit) {
-  for (int dz = 0; dz < Brick::kSizeZ; ++dz) {
-    for (int dy = 0; dy < Brick::kSizeY; ++dy) {
-      const int y = brick.y * Brick::kSizeY + dy;
-      const int z = brick.z * Brick::kSizeZ + dz;
-      if (y < grid.y && z < grid.z) visit(std::size_t(Brick::kSizeY * dz + dy), y, z);
-    }
-  }
-}
-
-Word valid_bits(Index3 brick, Index3 grid) {
-  const int used = std::min(grid.x - brick.x * Brick::kSizeX, Brick::kSizeX);
-  return used == 64 ? ~Word{0} : (Word{1} << used) - 1;
-}
-
 }  // namespace
 
 DirtyBricks::DirtyBricks(Index3 grid_size, int reach)
-    : size_(grid_size),
-      counts_(brick_counts(grid_size)),
-      reach_(reach),
-      marked_(counts_, false),
-      became_known_(counts_, false) {}
+    : size_(grid_size), reach_(reach), marked_(brick_counts(grid_size), false) {}
 
 void DirtyBricks::mark(Index3 voxel, bool grows) {
   const int reach = grows ? reach_ : 0;
@@ -101,33 +80,22 @@ int reach_of(const Growth& growth, const GridGeometry& geometry) {
   return int(std::min(std::ceil(growth.inflation_m / geometry.resolution_m), double(farthest)));
 }
 
-Brick regrow(const RawView& raw, const Growth& growth, Index3 index) {
-  const Index3 grid = raw.geometry.size;
-  const Window window = window_around(index, reach_of(growth, raw.geometry), grid);
-  const BitGrid local = growing_bits(raw, window, growth.unknown);
-  const BitGrid grown = inflate(local, growth.inflation_m, raw.geometry.resolution_m).value();
+Brick regrow(const VoxelGrid& grid, const Growth& growth, Index3 index) {
+  const GridGeometry& geometry = grid.geometry;
+  const Window window = window_around(index, reach_of(growth, geometry), geometry.size);
+  const BitGrid local = growing_bits(grid, window, growth.unknown);
+  const BitGrid grown = inflate(local, growth.inflation_m, geometry.resolution_m).value();
   const std::size_t word = std::size_t(index.x) - std::size_t(window.lower.x) / 64;
-  const Word valid = valid_bits(index, grid);
 
-  Brick brick;
-  brick.index = index;
-  for_rows(index, grid, [&](std::size_t at, int y, int z) {
-    const Word known = raw.known.row(y, z)[index.x];
+  Brick brick = brick_of(grid, index);
+  for (std::size_t at = 0; at < brick.grown.size(); ++at) {
+    const int y = index.y * Brick::kSizeY + int(at) % Brick::kSizeY;
+    const int z = index.z * Brick::kSizeZ + int(at) / Brick::kSizeY;
+    if (y >= geometry.size.y || z >= geometry.size.z) continue;
     const Word bits = grown.row(y - window.lower.y, z - window.lower.z)[word];
-    brick.occupied[at] = finished_word(bits, known, growth.unknown) & valid;
-    brick.known[at] = known & valid;
-  });
-  return brick;
-}
-
-Brick brick_of(const VoxelGrid& grid, Index3 index) {
-  const Word valid = valid_bits(index, grid.geometry.size);
-  Brick brick;
-  brick.index = index;
-  for_rows(index, grid.geometry.size, [&](std::size_t at, int y, int z) {
-    brick.occupied[at] = grid.occupied.row(y, z)[index.x] & valid;
-    brick.known[at] = grid.known.row(y, z)[index.x] & valid;
-  });
+    const Word known = grid.known.row(y, z)[index.x];
+    brick.grown[at] = finished_word(bits, known, growth.unknown) & bits_inside(index, geometry.size);
+  }
   return brick;
 }
 

@@ -18,8 +18,19 @@ std::string lower_case_ending(const std::string& path) {
   return ending;
 }
 
+std::string_view without_byte_order_mark(std::string_view text) {
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  return text;
+}
+
+TextReader::TextReader(std::string_view text) : rest_(text), end_('\n') {
+  const std::size_t end = text.find_first_of("\r\n");
+  if (end == std::string_view::npos || text[end] == '\n') return;
+  if (end + 1 == text.size() || text[end + 1] != '\n') end_ = '\r';
+}
+
 std::string_view TextReader::line() {
-  const std::size_t end = rest_.find('\n');
+  const std::size_t end = rest_.find(end_);
   std::string_view line = rest_.substr(0, end);
   rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
   if (!line.empty() && line.back() == '\r') line.remove_suffix(1);

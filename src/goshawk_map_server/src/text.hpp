@@ -13,15 +13,19 @@ namespace goshawk::map_server {
 /// "BT" of "maps/Floor.BT" is "bt"; empty without an ending
 std::string lower_case_ending(const std::string& path);
 
+/// @return the text behind a byte order mark of UTF-8, if it has one
+std::string_view without_byte_order_mark(std::string_view text);
+
 /// Takes lines and words off the front of a text.
 class TextReader {
  public:
-  explicit TextReader(std::string_view text) : rest_(text) {}
+  /// Lines end as the first one does: with LF, CR LF, or CR alone (old Macintosh).
+  explicit TextReader(std::string_view text);
 
   bool done() const { return rest_.empty(); }
   std::string_view rest() const { return rest_; }
 
-  /// @return the next line without its end (LF or CR LF)
+  /// @return the next line without its end
   std::string_view line();
 
   /// @return the next word of the text, over the ends of lines; empty at the end
@@ -29,6 +33,7 @@ class TextReader {
 
  private:
   std::string_view rest_;
+  char end_;
 };
 
 /// Words between blanks.

@@ -118,13 +118,7 @@ Result<RawVoxels> voxelize(const octomap::OcTree& tree, const VoxelizeOptions& o
 }
 
 Result<VoxelGrid> grow(const RawVoxels& raw, const Growth& growth, std::uint64_t version) {
-  VoxelGrid grid;
-  grid.geometry = raw.geometry;
-  grid.version = version;
-  grid.inflation_m = growth.inflation_m;
-  grid.unknown_is_occupied = growth.unknown != UnknownPolicy::free;
-
-  // Word by word in place, so that no more than one layer is needed beside raw and result.
+  // Word by word, in a copy that shares the chunks that do not change.
   const auto combine = [&](BitGrid& bits, auto&& rule) {
     for (int z = 0; z < raw.geometry.size.z; ++z) {
       for (int y = 0; y < raw.geometry.size.y; ++y) {
@@ -136,47 +130,26 @@ Result<VoxelGrid> grow(const RawVoxels& raw, const Growth& growth, std::uint64_t
       }
     }
   };
-  Result<BitGrid> grown = BitGrid();
-  if (growth.unknown == UnknownPolicy::occupied) {
-    BitGrid growing = raw.occupied;
-    combine(growing, growing_word);
-    grown = inflate(growing, growth.inflation_m, raw.geometry.resolution_m);
-  } else {
-    grown = inflate(raw.occupied, growth.inflation_m, raw.geometry.resolution_m);
-  }
+  // Padding known = false makes ~known true there, which is the padding of `grown`.
+  BitGrid growing = raw.occupied;
+  if (growth.unknown == UnknownPolicy::occupied) combine(growing, growing_word);
+  auto grown = inflate(growing, growth.inflation_m, raw.geometry.resolution_m);
   if (!grown) return grown.error();
   if (growth.unknown == UnknownPolicy::blocked) combine(*grown, finished_word);
-  // Padding known = false makes ~known true there, which is the padding of `occupied`.
-  grid.occupied = std::move(*grown);
-  grid.known = raw.known;
-  return grid;
-}
-
-VoxelGrid growing_voxels(const GridGeometry& geometry, const BitGrid& occupied,
-                         const BitGrid& known, UnknownPolicy unknown, std::uint64_t version) {
-  VoxelGrid grid{.geometry = geometry,
-                 .occupied = occupied,
-                 .known = known,
-                 .version = version,
-                 .inflation_m = 0.0,
-                 .unknown_is_occupied = unknown != UnknownPolicy::free};
-  if (unknown != UnknownPolicy::occupied) return grid;
-  for (int z = 0; z < geometry.size.z; ++z) {
-    for (int y = 0; y < geometry.size.y; ++y) {
-      BitGrid::Word* row = grid.occupied.mutable_row(y, z);
-      const BitGrid::Word* known_row = known.row(y, z);
-      for (std::size_t i = 0; i < occupied.words_per_row(); ++i) {
-        row[i] = growing_word(row[i], known_row[i], unknown);
-      }
-    }
-  }
-  return grid;
+  return VoxelGrid{.geometry = raw.geometry,
+                   .grown = *std::move(grown),
+                   .known = raw.known,
+                   .raw = raw.occupied,
+                   .version = version,
+                   .inflation_m = growth.inflation_m,
+                   .unknown_is_occupied = growth.unknown != UnknownPolicy::free,
+                   .unknown_grows = growth.unknown == UnknownPolicy::occupied};
 }
 
 Result<VoxelGrid> make_voxel_grid(const RawVoxels& raw, const Growth& growth,
                                   std::uint64_t version) try {
   auto grid = grow(raw, growth, version);
-  if (grid && grid->occupied.count() == grid->occupied.voxels()) {
+  if (grid && grid->grown.count() == grid->grown.voxels()) {
     return fail(ErrorCode::map_empty,
                 fmt::format("no voxel of the map is free after obstacles were inflated by {:.3g} m "
                             "with unknown space {}: use a smaller radius or margin, or treat "

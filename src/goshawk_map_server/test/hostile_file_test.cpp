@@ -85,7 +85,7 @@ TEST(HostileFile, CutOffAtEveryByteItIsRefusedOrStillSound) {
                     source.code() == ErrorCode::map_empty)
             << name << " cut to " << length << ": " << source.error().message;
       } else {
-        EXPECT_TRUE(voxelize(*source->tree)) << name;
+        EXPECT_TRUE(voxelize(*source)) << name;
       }
     }
   }
@@ -110,7 +110,7 @@ TEST(HostileFile, FlippedBitsNeverCrash) {
       if (source) {
         VoxelizeOptions small;
         small.max_voxels = 1'000'000;
-        (void)voxelize(*source->tree, small).ok();
+        (void)voxelize(*source, small).ok();
       }
     }
   }
@@ -253,10 +253,10 @@ TEST(HostileFile, AHugeLeafIsTooLargeUnlessABoxCutsIt) {
                             "data\n" +
                                 std::string("\0\x80", 2)))
           .value();
-  EXPECT_EQ(voxelize(*source.tree).code(), ErrorCode::map_too_large);
+  EXPECT_EQ(voxelize(source).code(), ErrorCode::map_too_large);
   VoxelizeOptions options;
   options.box = Box{Vec3(-1, -1, -1), Vec3(1, 1, 1)};
-  const RawVoxels raw = voxelize(*source.tree, options).value();
+  const RawVoxels raw = voxelize(source, options).value();
   EXPECT_EQ(raw.occupied.count(), 1000);
   EXPECT_EQ(raw.known.count(), 1000);
 }

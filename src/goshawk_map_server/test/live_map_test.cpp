@@ -20,8 +20,9 @@ std::vector<Vec3> random_scan(Random& random, const Vec3& from, int rays) {
 }
 
 void expect_same(const VoxelGrid& a, const VoxelGrid& b) {
-  EXPECT_EQ(a.occupied, b.occupied);
+  EXPECT_EQ(a.grown, b.grown);
   EXPECT_EQ(a.known, b.known);
+  EXPECT_EQ(a.raw, b.raw);
   EXPECT_EQ(a.version, b.version);
 }
 
@@ -29,11 +30,11 @@ void expect_same(const VoxelGrid& a, const VoxelGrid& b) {
 void expect_rebuilt(const LiveMap& map, const Box& box) {
   VoxelizeOptions options;
   options.box = box;
-  const RawVoxels raw = voxelize(map.tree(), options).value();
+  const RawVoxels raw = voxelize(*map.tree(), options).value();
   const auto anew = make_voxel_grid(raw, map.growth(), map.grid().version);
   if (anew) return expect_same(map.grid(), *anew);
   EXPECT_EQ(anew.code(), ErrorCode::map_empty);
-  EXPECT_EQ(map.grid().occupied.count(), map.grid().occupied.voxels());
+  EXPECT_EQ(map.grid().grown.count(), map.grid().grown.voxels());
   EXPECT_EQ(map.grid().known, raw.known);
 }
 
@@ -60,13 +61,14 @@ TEST(LiveMap, NothingUnseenBecomesFreeUnderTheStrictPolicies) {
   for (const auto policy : {UnknownPolicy::occupied, UnknownPolicy::blocked}) {
     LiveMap map =
         LiveMap::unknown_space({Vec3(-4, -2, -1), Vec3(4, 2, 1)}, 0.1, {policy, 0.1}).value();
-    EXPECT_EQ(map.grid().occupied.count(), map.grid().occupied.voxels());
+    EXPECT_EQ(map.grid().grown.count(), map.grid().grown.voxels());
     const Vec3 from(0.05, 0.05, 0.05);
     ASSERT_TRUE(map.insert_scan(random_scan(random, from, 300), from, 5.0));
-    const BitGrid& occupied = map.grid().occupied;
-    EXPECT_LT(occupied.count(), occupied.voxels());
-    for (std::size_t i = 0; i < occupied.words().size(); ++i) {
-      EXPECT_EQ(~occupied.words()[i] & ~map.grid().known.words()[i], 0U);
+    const BitGrid& grown = map.grid().grown;
+    EXPECT_LT(grown.count(), grown.voxels());
+    const auto grown_words = grown.to_words(), known_words = map.grid().known.to_words();
+    for (std::size_t i = 0; i < grown_words.size(); ++i) {
+      EXPECT_EQ(~grown_words[i] & ~known_words[i], 0U);
     }
   }
 }
@@ -102,9 +104,9 @@ TEST(LiveMap, AnObstacleThatGoesAwayIsFreedAgain) {
   const std::vector<Vec3> far_hit{Vec3(5.05, 1.05, 1.05)};
   ASSERT_TRUE(map.insert_scan(near_hit, from, 10.0));
   const Index3 voxel = *map.grid().geometry.index_of(box_at);
-  EXPECT_TRUE(map.grid().occupied.get(voxel));
+  EXPECT_TRUE(map.grid().grown.get(voxel));
   for (int i = 0; i < 10; ++i) ASSERT_TRUE(map.insert_scan(far_hit, from, 10.0));
-  EXPECT_FALSE(map.grid().occupied.get(voxel));
+  EXPECT_FALSE(map.grid().grown.get(voxel));
 }
 
 TEST(LiveMap, BadScansChangeNothingAndBadPointsAreCounted) {
@@ -134,7 +136,7 @@ TEST(LiveMap, MissingReturnsDoNotBlockTheSensor) {
   EXPECT_EQ(map.insert_scan(points, from, 5.0).value().points_left_out, 2);
   const Index3 voxel = *map.grid().geometry.index_of(from);
   EXPECT_TRUE(map.grid().known.get(voxel));
-  EXPECT_FALSE(map.raw_occupied().get(voxel));
+  EXPECT_FALSE(map.grid().raw.get(voxel));
 }
 
 TEST(LiveMap, StartsFromALoadedMap) {
@@ -149,7 +151,7 @@ TEST(LiveMap, StartsFromALoadedMap) {
     const auto result = map.insert_scan(wall, from, 10.0).value();
     ASSERT_TRUE(apply(subscriber, result.update));
   }
-  EXPECT_TRUE(subscriber.occupied.get(*subscriber.geometry.index_of(wall[0])));
+  EXPECT_TRUE(subscriber.grown.get(*subscriber.geometry.index_of(wall[0])));
   expect_same(subscriber, map.grid());
   expect_rebuilt(map, {Vec3::Zero(), Vec3::Constant(6.0)});
 }

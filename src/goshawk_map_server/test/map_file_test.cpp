@@ -109,7 +109,7 @@ std::string ply_binary(const std::vector<Vec3>& points, bool big) {
 
 // Are exactly the points' voxels occupied?
 void expect_points(const MapSource& source, const std::vector<Vec3>& points) {
-  const RawVoxels voxels = voxelize(*source.tree).value();
+  const RawVoxels voxels = voxelize(source).value();
   EXPECT_EQ(voxels.occupied.count(), std::int64_t(points.size()));
   for (const Vec3& p : points) {
     const auto voxel = voxels.geometry.index_of(p);
@@ -169,17 +169,17 @@ TEST(LoadMap, CloudMeaningSaysWhatLiesBetweenThePoints) {
   LoadOptions options;
 
   options.cloud = CloudMeaning::map;
-  RawVoxels voxels = voxelize(*load_map(path, options).value().tree).value();
+  RawVoxels voxels = voxelize(load_map(path, options).value()).value();
   EXPECT_EQ(voxels.known.count(), voxels.known.voxels());
 
   options.cloud = CloudMeaning::points;
-  voxels = voxelize(*load_map(path, options).value().tree).value();
+  voxels = voxelize(load_map(path, options).value()).value();
   EXPECT_EQ(voxels.known.count(), 3);
   EXPECT_EQ(voxels.occupied.count(), 3);
 
   options.cloud = CloudMeaning::scan;
   options.sensor_origin_map = Vec3(0.1, 1.1, 0.1);
-  voxels = voxelize(*load_map(path, options).value().tree).value();
+  voxels = voxelize(load_map(path, options).value()).value();
   EXPECT_EQ(voxels.occupied.count(), 3);
   EXPECT_GT(voxels.known.count(), 10);
   const auto between = voxels.geometry.index_of(Vec3(0.1, 0.5, 0.1));  // on the first ray
@@ -195,7 +195,7 @@ TEST(LoadMap, TheBoxCutsACloudAndBoundsTheMap) {
   const MapSource source =
       load_map(folder.write("a.pcd", pcd_ascii(some_points())), options).value();
   EXPECT_EQ(source.points_outside, 1);
-  const RawVoxels voxels = voxelize(*source.tree).value();
+  const RawVoxels voxels = voxelize(source).value();
   EXPECT_EQ(voxels.geometry.size, (Index3{10, 10, 10}));
   EXPECT_EQ(voxels.occupied.count(), 2);
 }
@@ -204,7 +204,7 @@ TEST(LoadMap, WarframeVoxelsStandWhereTheFileSays) {
   const Folder folder;
   const MapSource source =
       load_map(folder.write("m.3dmap", "voxel 5 6 7\r\n0 0 0\n4 5 6\n2 3 1\n")).value();
-  const RawVoxels voxels = voxelize(*source.tree).value();
+  const RawVoxels voxels = voxelize(source).value();
   EXPECT_EQ(voxels.geometry.size, (Index3{5, 6, 7}));
   EXPECT_EQ(voxels.occupied.count(), 3);
   EXPECT_EQ(voxels.known.count(), 5 * 6 * 7);
@@ -228,7 +228,7 @@ TEST(LoadMap, ColouredTreesLoseOnlyTheirColours) {
   }
   coloured.updateInnerOccupancy();
   ASSERT_TRUE(coloured.write(folder.file("c.ot")));
-  const RawVoxels a = voxelize(*load_map(folder.file("c.ot")).value().tree).value();
+  const RawVoxels a = voxelize(load_map(folder.file("c.ot")).value()).value();
   const RawVoxels b = voxelize(plain).value();
   EXPECT_EQ(a.occupied, b.occupied);
   EXPECT_EQ(a.known, b.known);

@@ -106,7 +106,7 @@ TEST(SaveVoxels, WorldsComeBackBitForBitFromBothKindsOfFile) {
       const std::string path = folder.file(kind + ending);
       ASSERT_TRUE(save_voxels(world.geometry, world.occupied, {}, path));
       const MapSource source = load_map(path).value();
-      const RawVoxels raw = voxelize(*source.tree).value();
+      const RawVoxels raw = voxelize(source).value();
       EXPECT_EQ(raw.occupied, world.occupied) << kind << ending;
       EXPECT_EQ(raw.known.count(), raw.known.voxels());
       EXPECT_TRUE(raw.geometry.origin_map.isApprox(world.geometry.origin_map));

@@ -20,7 +20,7 @@ std::array<int, 3> sorted(Index3 i) {
 
 TEST(RealMap, Geb079HasTheVoxelsOfItsReadme) {
   GOSHAWK_NEED_DATA(path, "octomap/geb079.bt");
-  const RawVoxels raw = voxelize(*load_map(path).value().tree).value();
+  const RawVoxels raw = voxelize(load_map(path).value()).value();
   EXPECT_EQ(raw.geometry.resolution_m, 0.08);
   EXPECT_EQ(raw.occupied.count(), 185673);
   EXPECT_EQ(raw.known.count(), 185673 + 950759);
@@ -29,7 +29,7 @@ TEST(RealMap, Geb079HasTheVoxelsOfItsReadme) {
 
 TEST(RealMap, Fr78HasTheVoxelsOfItsReadme) {
   GOSHAWK_NEED_DATA(path, "octomap/fr78.bt");
-  const RawVoxels raw = voxelize(*load_map(path).value().tree).value();
+  const RawVoxels raw = voxelize(load_map(path).value()).value();
   EXPECT_EQ(raw.geometry.resolution_m, 0.05);
   EXPECT_EQ(raw.occupied.count(), 287664);
   EXPECT_NEAR(double(raw.known.count() - raw.occupied.count()), 2.61e6, 0.005e6);
@@ -39,7 +39,7 @@ TEST(RealMap, Fr78HasTheVoxelsOfItsReadme) {
 TEST(RealMap, EveryVoxelIsWhatOctoMapAnswers) {
   GOSHAWK_NEED_DATA(path, "octomap/geb079.bt");
   const MapSource source = load_map(path).value();
-  const RawVoxels raw = voxelize(*source.tree).value();
+  const RawVoxels raw = voxelize(source).value();
   octomap::OcTree tree(0.1);
   ASSERT_TRUE(tree.readBinary(path));
   Random random(1);
@@ -57,7 +57,7 @@ TEST(RealMap, ALoadedMapIsWrittenAsTheSameBytes) {
   GOSHAWK_NEED_DATA(path, "octomap/geb079.bt");
   const testing::Folder folder;
   const MapSource source = load_map(path).value();
-  const RawVoxels raw = voxelize(*source.tree).value();
+  const RawVoxels raw = voxelize(source).value();
   ASSERT_TRUE(save_voxels(raw.geometry, raw.occupied, raw.known, folder.file("again.bt")));
   const auto tree_bytes = [](const std::string& bytes) {
     return bytes.substr(bytes.find("\ndata\n"));
@@ -68,7 +68,7 @@ TEST(RealMap, ALoadedMapIsWrittenAsTheSameBytes) {
 
 TEST(RealMap, WarframeMapsHaveTheirVoxels) {
   GOSHAWK_NEED_DATA(path, "warframe/Simple.3dmap");
-  const RawVoxels raw = voxelize(*load_map(path).value().tree).value();
+  const RawVoxels raw = voxelize(load_map(path).value()).value();
   EXPECT_EQ(raw.geometry.size, (Index3{105, 132, 105}));
   EXPECT_EQ(raw.occupied.count(), 512);
   EXPECT_EQ(raw.known.count(), raw.known.voxels());
@@ -77,14 +77,14 @@ TEST(RealMap, WarframeMapsHaveTheirVoxels) {
 TEST(RealMap, TheLargeWarframeMapLoads) {
   GOSHAWK_NEED_DATA(path, "warframe/Complex.3dmap");
   const MapSource source = load_map(path).value();
-  EXPECT_EQ(voxelize(*source.tree).value().occupied.count(), source.points_read);
+  EXPECT_EQ(voxelize(source).value().occupied.count(), source.points_read);
 }
 
 TEST(RealMap, AutowareCloudHasItsValidPoints) {
   GOSHAWK_NEED_DATA(path, "clouds/autoware_test.pcd");
   const MapSource source = load_map(path).value();
   EXPECT_EQ(source.points_read, 65536);
-  const RawVoxels raw = voxelize(*source.tree).value();
+  const RawVoxels raw = voxelize(source).value();
   EXPECT_GT(raw.occupied.count(), 1000);
   EXPECT_LE(raw.occupied.count(), 48049);
 }
@@ -93,7 +93,7 @@ TEST(RealMap, PlyCloudHasItsPoints) {
   GOSHAWK_NEED_DATA(path, "clouds/small_gicp_source.ply");
   const MapSource source = load_map(path).value();
   EXPECT_EQ(source.points_read, 69792);
-  EXPECT_GT(voxelize(*source.tree).value().occupied.count(), 1000);
+  EXPECT_GT(voxelize(source).value().occupied.count(), 1000);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 
 #include "goshawk/core/grid_geometry.hpp"
 #include "goshawk/core/random.hpp"
+#include "goshawk/map_server/voxel_map.hpp"
 
 namespace goshawk::map_server::testing {
 
@@ -63,6 +64,11 @@ inline std::string data(const std::string& name) {
   GTEST_SKIP() << "the shared map " << (name)                              \
                << " is not here: set "                                     \
                   "GOSHAWK_DATA to the folder that holds it"
+
+inline bool is_occupied(const RawVoxels& voxels, const Vec3& p_map) {
+  const auto voxel = voxels.geometry.index_of(p_map);
+  return voxel && voxels.occupied.get(*voxel);
+}
 
 inline BitGrid random_bits(Index3 size, bool outside, double share, Random& random) {
   BitGrid bits(size, outside);

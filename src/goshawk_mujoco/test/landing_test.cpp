@@ -30,8 +30,8 @@ constexpr double kMost_s = 60.0;  // of the machine's time, for what hangs
 VoxelGrid room(std::uint64_t version, bool with_table) {
   VoxelGrid grid;
   grid.geometry = {.origin_map = {0.0, -2.0, 0.0}, .resolution_m = 0.2, .size = {30, 44, 20}};
-  grid.occupied = BitGrid(grid.geometry.size, true);
-  for (int y = 8; with_table && y < 13; ++y) grid.occupied.set_run(12, 18, y, 2, true);
+  grid.grown = BitGrid(grid.geometry.size, true);
+  for (int y = 8; with_table && y < 13; ++y) grid.grown.set_run(12, 18, y, 2, true);
   grid.version = version;
   return grid;
 }

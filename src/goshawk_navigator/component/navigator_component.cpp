@@ -30,7 +30,8 @@ std::uint8_t to_msg(State state) {
 constexpr double kAlive_s = 0.5;  // the newest state again: the tracker lands without it
 
 /// goal_pose, odom, trajectory, stage_report -> plan_request, committed_trajectory,
-/// navigator_state, navigator_alive
+/// navigator_state, navigator_alive. Counts on the monotonic clock; messages carry the wall
+/// clock's.
 class NavigatorComponent : public Component {
  public:
   explicit NavigatorComponent(Node& node)
@@ -44,7 +45,7 @@ class NavigatorComponent : public Component {
         alive_(node.advertise<msg::NavigatorState>("navigator_alive", Qos::best_effort())) {
     subscribe();
     node.every(0.02, [this] {
-      navigator_.tick(node_.now_ns());
+      navigator_.tick(node_.monotonic_ns());
       carry_out();
     });
     publish(StateOrder{});
@@ -64,11 +65,10 @@ class NavigatorComponent : public Component {
         "goal_pose", Qos::reliable_last(),
         [this](const geometry_msgs::msg::PoseStamped& m, const MessageInfo&) { on_goal(m); });
     node_.subscribe<nav_msgs::msg::Odometry>(
-        "odom", Qos::best_effort(),
-        [this](const nav_msgs::msg::Odometry& m, const MessageInfo& info) {
+        "odom", Qos::best_effort(), [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) {
           const auto state = conversions::from_msg(m);
           if (!state) return;  // the tracker reports bad odometry
-          navigator_.on_odometry(*state, info.received_ns);
+          navigator_.on_odometry(*state, node_.monotonic_ns());
         });
     node_.subscribe<msg::BezierTrajectory>(
         "trajectory", Qos::reliable_last(),
@@ -84,8 +84,9 @@ class NavigatorComponent : public Component {
     Status status = conversions::check_frame(m.header(), conversions::kMapFrame, "a goal");
     if (status) {
       const auto& q = m.pose().orientation();
-      status = navigator_.on_goal(conversions::from_msg(m.pose().position()),
-                                  yaw_of(Quaternion(q.w(), q.x(), q.y(), q.z())), node_.now_ns());
+      status =
+          navigator_.on_goal(conversions::from_msg(m.pose().position()),
+                             yaw_of(Quaternion(q.w(), q.x(), q.y(), q.z())), node_.monotonic_ns());
     }
     if (!status) {
       reporter_.fault(status.error());
@@ -101,12 +102,12 @@ class NavigatorComponent : public Component {
     auto candidate = candidate_of(m);
     if (!candidate) {
       navigator_.on_report(m.request().id(), StageRole::trajectory_optimizer, candidate.error(),
-                           info.received_ns);
+                           node_.monotonic_ns());
       reporter_.failed(m.request().id(), candidate.error());
     } else {
       wire_ns_ = wire_time_ns(m.header(), info);
       candidate_ = m;
-      navigator_.on_trajectory(*std::move(candidate), info.received_ns);
+      navigator_.on_trajectory(*std::move(candidate), node_.monotonic_ns());
     }
     carry_out();
   }
@@ -128,7 +129,7 @@ class NavigatorComponent : public Component {
       if (to_string(code) == m.code()) outcome.code = code;
     }
     navigator_.on_report(m.request_id(), conversions::stage_role_of(m.stage()), outcome,
-                         node_.now_ns());
+                         node_.monotonic_ns());
     carry_out();
   }
 
@@ -138,9 +139,16 @@ class NavigatorComponent : public Component {
     }
   }
 
+  std::int64_t to_wall_ns(std::int64_t monotonic_ns) const {
+    return monotonic_ns + (node_.now_ns() - node_.monotonic_ns());
+  }
+
   void publish(const PlanRequest& request) {
     auto m = conversions::to_msg(request);
     m.header().stamp(conversions::to_stamp(node_.now_ns()));
+    if (request.start_time_ns) {
+      m.start_time(conversions::to_stamp(to_wall_ns(*request.start_time_ns)));
+    }
     reporter_.send(requests_, m);
   }
 
@@ -149,6 +157,8 @@ class NavigatorComponent : public Component {
     m.header(conversions::make_header(node_.now_ns()));
     m.nominal(candidate_);
     conversions::fill_msg(committed, m);
+    const std::int64_t start_ns = to_wall_ns(committed.start_time_ns());
+    m.start_time(conversions::to_stamp(start_ns));
     reporter_.send(commits_, m);
     reporter_.answered(committed.id(), {.wire_ns = wire_ns_, .compute_ns = 0});
   }

@@ -64,7 +64,7 @@ std::shared_ptr<VoxelGrid> read_map(Bytes& in) {
   if ((flags & 1U) != 0) grid->geometry.resolution_m = 0.2;
   if ((flags & 2U) != 0) grid->geometry.size.x += 1;  // one that does not agree with its bits
   grid->unknown_is_occupied = (flags & 4U) != 0;
-  grid->occupied = BitGrid(size, true);
+  grid->grown = BitGrid(size, true);
   if ((flags & 8U) != 0) grid->known = BitGrid(size, false, true);
   std::uint32_t state = in.byte() + 1U;
   const std::uint32_t ratio = in.byte();
@@ -72,7 +72,7 @@ std::shared_ptr<VoxelGrid> read_map(Bytes& in) {
     for (int y = 0; y < size.y; ++y) {
       for (int x = 0; x < size.x; ++x) {
         state = state * 1664525U + 1013904223U;
-        if (state >> 24 < ratio) grid->occupied.set({x, y, z}, true);
+        if (state >> 24 < ratio) grid->grown.set({x, y, z}, true);
         if (!grid->known.empty() && (state >> 8 & 7U) == 0) grid->known.set({x, y, z}, false);
       }
     }

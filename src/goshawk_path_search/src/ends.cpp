@@ -13,7 +13,7 @@ namespace {
 Result<Index3> find_voxel(const VoxelGrid& map, const Vec3& p_map, Endpoint endpoint) {
   if (is_finite(p_map)) {
     const auto index = map.geometry.index_of(p_map);
-    if (index && !map.occupied.get(*index)) return *index;
+    if (index && !map.grown.get(*index)) return *index;
   }
   return locate(map, p_map, endpoint);
 }
@@ -49,7 +49,7 @@ std::optional<Index3> nearest_free(const VoxelGrid& map, const Vec3& p_map, doub
       for (int x = from(0); x <= to(0, g.size.x); ++x) {
         const double squared = (Vec3(x + 0.5, y + 0.5, z + 0.5) - p).squaredNorm();
         if (best ? squared >= best_squared : squared > best_squared) continue;
-        if (map.occupied.get({x, y, z})) continue;
+        if (map.grown.get({x, y, z})) continue;
         best = Index3{x, y, z};
         best_squared = squared;
       }

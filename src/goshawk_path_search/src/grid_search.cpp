@@ -55,7 +55,7 @@ class GridSearch final : public GridPlanner {
   using GridPlanner::search;
   std::string_view name() const override { return name_; }
   using GridPlanner::set_map;
-  void set_map(const BitGrid& blocked, const BitGrid* costly) override;
+  void set_map(const BitGrid& blocked, const BitGrid* known) override;
   Status search(const GridQuery& query, VoxelPath& path) override;
 
  private:

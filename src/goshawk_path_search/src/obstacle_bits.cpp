@@ -61,6 +61,7 @@ std::int64_t ObstacleBits::nodes_for(Index3 size) {
 
 void ObstacleBits::resize(Index3 size) {
   size_ = size;
+  held_ = BitGrid(size, true, false);
   clear(axes_[0], size.x, size.y, size.z);
   clear(axes_[1], size.y, size.x, size.z);
   clear(axes_[2], size.z, size.x, size.y);
@@ -98,19 +99,19 @@ void ObstacleBits::clear(Copy& copy, int u_size, int v_size, int w_size) {
 
 void ObstacleBits::assign(const BitGrid& blocked) {
   if (!(blocked.size() == size_)) resize(blocked.size());
-  for (int z = 0; z < size_.z; ++z) {
-    for (int y = 0; y < size_.y; ++y) assign_row(blocked.row(y, z), y, z);
-  }
+  for_changed_chunks(held_, blocked, [&](BitGrid::Rows rows) {
+    for (int z = rows.z0; z < rows.z1; ++z) {
+      for (int y = rows.y0; y < rows.y1; ++y) assign_row(blocked, y, z);
+    }
+  });
+  held_ = blocked;
 }
 
-void ObstacleBits::assign_row(const std::uint64_t* row, int y, int z) {
-  const std::uint64_t* words = axes_[0].words.data() + 1;
-  std::int64_t p = position(axes_[0], 0, y, z);
-  for (int x0 = 0; x0 < size_.x; x0 += 64, p += 64) {
-    const std::int64_t w = p >> 6, shift = p & 63;
-    std::uint64_t held = words[w] >> shift;
-    if (shift != 0) held |= words[w + 1] << (64 - shift);
-    std::uint64_t changes = held ^ row[x0 >> 6];
+void ObstacleBits::assign_row(const BitGrid& blocked, int y, int z) {
+  const std::uint64_t* before = held_.row(y, z);
+  const std::uint64_t* after = blocked.row(y, z);
+  for (int x0 = 0; x0 < size_.x; x0 += 64) {
+    std::uint64_t changes = before[x0 >> 6] ^ after[x0 >> 6];
     if (size_.x - x0 < 64) changes &= ~std::uint64_t{0} >> (64 - (size_.x - x0));
     if (changes != 0) apply_changes(changes, x0, y, z);
   }

@@ -76,7 +76,7 @@ void PathSearch::set_map(std::shared_ptr<const VoxelGrid> map) {
     map_error_ = status.error();
     return;
   }
-  auto searched = make_search_map(std::move(map), config_, box_);
+  auto searched = search_map_.follow(std::move(map));
   if (!searched) {
     map_error_ = searched.error();
     return;
@@ -93,9 +93,8 @@ void PathSearch::set_map(std::shared_ptr<const VoxelGrid> map) {
     planner_resolution_m_ = resolution_m;
   }
   map_ = *std::move(searched);
-  const auto unknown =
-      config_.unknown == UnknownRule::costly ? unknown_voxels(*map_) : std::nullopt;
-  planner_->set_map(map_->occupied, unknown ? &*unknown : nullptr);
+  const bool costly = config_.unknown == UnknownRule::costly && !map_->known.empty();
+  planner_->set_map(map_->grown, costly ? &map_->known : nullptr);
 }
 
 Result<PlannedPath> PathSearch::plan(const PlanQuery& query) {
@@ -161,7 +160,7 @@ Status PathSearch::place(const PlanQuery& query) {
     auto end = place_end(*map_, config_.corner_rule, p, endpoint, config_.move_within_m);
     const bool outside =
         end.code() == ErrorCode::start_outside || end.code() == ErrorCode::goal_outside;
-    if (!outside || !box_) return end;
+    if (!outside || !has_box_) return end;
     return Result<PlacedEnd>(fail(end.code(), end.error().message + " (cut by search_box)"));
   };
   const auto start = placed(query.start_map, Endpoint::start);
@@ -190,7 +189,7 @@ Status PathSearch::search(const PlanQuery& query, PlannedPath& path) {
       .start = start_.end, .goals = goal_ends_, .stop = earlier(query.stop, config_.time_limit_s)};
   Status status = planner_->search(voxels, voxel_path_);
   if (status.code() != ErrorCode::no_path || !config_.nearest_reachable) return status;
-  const auto nearest = nearest_reachable(map_->occupied, config_.corner_rule, voxels);
+  const auto nearest = nearest_reachable(map_->grown, config_.corner_rule, voxels);
   if (!nearest) return nearest.error();
   // One goal is left: the nearest one, moved to the voxel found.
   const Vec3 center_map = map_->geometry.center(*nearest);
@@ -214,7 +213,7 @@ void PathSearch::relax(std::vector<Vec3>& waypoints_map) {
   const GridGeometry& geometry = map_->geometry;
   relaxed_grid_.clear();
   for (const int k : kept_) relaxed_grid_.push_back(nodes_grid_[std::size_t(k)]);
-  if (pull_tight(map_->occupied, relaxed_grid_) == 0) return;
+  if (pull_tight(map_->grown, relaxed_grid_) == 0) return;
   relaxed_map_.clear();
   for (const Vec3& p : relaxed_grid_) {
     relaxed_map_.push_back(geometry.origin_map + geometry.resolution_m * p);
@@ -224,7 +223,7 @@ void PathSearch::relax(std::vector<Vec3>& waypoints_map) {
   // A leg that was free by less than the rounding of metres: the nodes themselves will do.
   for (std::size_t i = 1; i < relaxed_map_.size(); ++i) {
     const Vec3 &a = relaxed_grid_[i - 1], &b = relaxed_grid_[i];
-    const bool was_free = line_is_free(map_->occupied, a, b);
+    const bool was_free = line_is_free(map_->grown, a, b);
     if (was_free && !line_is_free(*map_, relaxed_map_[i - 1], relaxed_map_[i])) return;
   }
   waypoints_map = relaxed_map_;
@@ -244,7 +243,7 @@ void PathSearch::fill(PlannedPath& path) {
   path.raw_map.push_back(goal.at_map);
   nodes_grid_.clear();
   for (const Vec3& p : path.raw_map) nodes_grid_.push_back(geometry.to_grid(p));
-  pruner_.prune(config_.pruning, map_->occupied, nodes_grid_, kept_);
+  pruner_.prune(config_.pruning, map_->grown, nodes_grid_, kept_);
   path.waypoints_map.clear();
   for (const int k : kept_) path.waypoints_map.push_back(path.raw_map[std::size_t(k)]);
   if (config_.pruning == Pruning::relaxed) relax(path.waypoints_map);

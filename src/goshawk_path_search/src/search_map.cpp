@@ -1,5 +1,7 @@
 #include "goshawk/path_search/search_map.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -14,55 +16,17 @@ int first_not_below(double bound_m, double origin_m, double resolution_m, int n)
   return int(std::clamp(i, 0.0, double(n)));
 }
 
-BitGrid crop(const BitGrid& grid, Index3 lower, Index3 size) {
-  BitGrid cut(size, grid.outside());
-  for (int z = 0; z < size.z; ++z) {
-    for (int y = 0; y < size.y; ++y) {
-      for (int x = 0; x < size.x; ++x) {
-        if (grid.get(lower + Index3{x, y, z})) cut.set({x, y, z}, true);
-      }
-    }
-  }
-  return cut;
-}
-
-Result<VoxelGrid> crop(const VoxelGrid& map, const SearchBox& box) {
-  const GridGeometry& g = map.geometry;
-  std::array<int, 3> from{}, count{};
-  const std::array<int, 3> n = {g.size.x, g.size.y, g.size.z};
-  for (int a = 0; a < 3; ++a) {
-    const auto k = std::size_t(a);
-    from[k] = first_not_below(box.lower_map[a], g.origin_map[a], g.resolution_m, n[k]);
-    // The next double above, so that a centre on the upper face is inside.
-    const double above = std::nextafter(box.upper_map[a], HUGE_VAL);
-    count[k] = first_not_below(above, g.origin_map[a], g.resolution_m, n[k]) - from[k];
-  }
-  if (*std::ranges::min_element(count) <= 0) {
-    return fail(ErrorCode::map_empty, "search_box from " + to_text(box.lower_map) + " to " +
-                                          to_text(box.upper_map) +
-                                          " m holds no voxel of the map: choose another box");
-  }
-  const Index3 lower{from[0], from[1], from[2]}, size{count[0], count[1], count[2]};
-  VoxelGrid cut = {.geometry = {g.lower_corner(lower), g.resolution_m, size},
-                   .occupied = crop(map.occupied, lower, size),
-                   .known = {},
-                   .version = map.version,
-                   .inflation_m = map.inflation_m,
-                   .unknown_is_occupied = map.unknown_is_occupied};
-  if (!map.known.empty()) cut.known = crop(map.known, lower, size);
-  return cut;
-}
-
-void block_unknown(VoxelGrid& map) {
-  const auto unknown = unknown_voxels(map);
-  map.unknown_is_occupied = true;
-  if (!unknown) return;
-  for (int z = 0; z < map.geometry.size.z; ++z) {
-    for (int y = 0; y < map.geometry.size.y; ++y) {
-      BitGrid::Word* row = map.occupied.mutable_row(y, z);
-      const BitGrid::Word* add = unknown->row(y, z);
-      for (std::size_t w = 0; w < map.occupied.words_per_row(); ++w) row[w] |= add[w];
-    }
+// A row of a cut, 64 voxels at a time: word_at(x) gives those from x on.
+template <typename WordAt>
+void write_row(BitGrid& cut, int y, int z, const WordAt& word_at) {
+  const int words = int(cut.words_per_row());
+  const int used = cut.size().x % 64;
+  const BitGrid::Word padding = used == 0 ? 0 : ~BitGrid::Word{0} << used;
+  for (int w = 0; w < words; ++w) {
+    BitGrid::Word word = word_at(64 * w);
+    if (w + 1 == words) word = cut.outside() ? word | padding : word & ~padding;
+    // A chunk that stays is not cloned.
+    if (word != cut.row(y, z)[w]) cut.mutable_row(y, z)[w] = word;
   }
 }
 
@@ -94,42 +58,103 @@ Result<std::optional<SearchBox>> parse_search_box(const std::string& text) {
   return std::optional(box);
 }
 
-std::optional<BitGrid> unknown_voxels(const VoxelGrid& map) {
-  if (map.known.empty()) return {};
-  BitGrid unknown(map.geometry.size, false);
-  for (int z = 0; z < map.geometry.size.z; ++z) {
-    for (int y = 0; y < map.geometry.size.y; ++y) {
-      for (int x = 0; x < map.geometry.size.x; ++x) {
-        if (!map.known.get({x, y, z})) unknown.set({x, y, z}, true);
-      }
-    }
+Status SearchMap::place(const GridGeometry& g) {
+  lower_ = {};
+  derived_.geometry = g;
+  if (!box_) return success();
+  std::array<int, 3> from{}, count{};
+  const std::array<int, 3> n = {g.size.x, g.size.y, g.size.z};
+  for (int a = 0; a < 3; ++a) {
+    const auto k = std::size_t(a);
+    from[k] = first_not_below(box_->lower_map[a], g.origin_map[a], g.resolution_m, n[k]);
+    // The next double above, so that a centre on the upper face is inside.
+    const double above = std::nextafter(box_->upper_map[a], HUGE_VAL);
+    count[k] = first_not_below(above, g.origin_map[a], g.resolution_m, n[k]) - from[k];
   }
-  return unknown;
+  if (*std::ranges::min_element(count) <= 0) {
+    return fail(ErrorCode::map_empty,
+                fmt::format("search_box from {} to {} m holds no voxel of the map: choose another "
+                            "box",
+                            to_text(box_->lower_map), to_text(box_->upper_map)));
+  }
+  lower_ = {from[0], from[1], from[2]};
+  derived_.geometry = {g.lower_corner(lower_), g.resolution_m, {count[0], count[1], count[2]}};
+  return success();
 }
 
-Result<std::shared_ptr<const VoxelGrid>> make_search_map(std::shared_ptr<const VoxelGrid> map,
-                                                         const Config& config,
-                                                         const std::optional<SearchBox>& box) {
-  const bool wants_unknown =
-      config.unknown == UnknownRule::free || config.unknown == UnknownRule::costly;
+// Rows of the derived grids whose source lies in a chunk that changed.
+void SearchMap::derive(const VoxelGrid& map) {
+  const Index3 size = derived_.geometry.size;
+  const auto each_row = [&](BitGrid::Rows rows, auto&& visit) {
+    const int z1 = std::min(rows.z1 - lower_.z, size.z), y1 = std::min(rows.y1 - lower_.y, size.y);
+    for (int z = std::max(0, rows.z0 - lower_.z); z < z1; ++z) {
+      for (int y = std::max(0, rows.y0 - lower_.y); y < y1; ++y) visit(y, z);
+    }
+  };
+  const auto bits = [&](const BitGrid& grid, int x, int y, int z) {
+    return grid.bits_from(lower_.x + x, lower_.y + y, lower_.z + z);
+  };
+  const auto write_grown = [&](int y, int z) {
+    write_row(derived_.grown, y, z, [&](int x) {
+      const BitGrid::Word grown = bits(map.grown, x, y, z);
+      return blocks_unknown_ ? grown | ~bits(map.known, x, y, z) : grown;
+    });
+  };
+  const auto write_known = [&](int y, int z) {
+    write_row(derived_.known, y, z, [&](int x) { return bits(map.known, x, y, z); });
+  };
+  for_changed_chunks(source_->grown, map.grown,
+                     [&](BitGrid::Rows rows) { each_row(rows, write_grown); });
+  if (map.known.empty()) return;
+  for_changed_chunks(source_->known, map.known, [&](BitGrid::Rows rows) {
+    if (blocks_unknown_) each_row(rows, write_grown);
+    each_row(rows, write_known);
+  });
+}
+
+// As if derived from a map that is free and unknown throughout.
+Status SearchMap::begin(const VoxelGrid& map) {
+  source_.reset();
+  if (auto status = place(map.geometry); !status) return status;
+  const Index3 size = map.geometry.size, cut = derived_.geometry.size;
+  auto before = std::make_shared<VoxelGrid>();
+  before->geometry = map.geometry;
+  before->grown = BitGrid(size, true);
+  derived_.grown = BitGrid(cut, true, blocks_unknown_);
+  derived_.known = {};
+  if (!map.known.empty()) {
+    before->known = BitGrid(size, false);
+    derived_.known = BitGrid(cut, false);
+  }
+  source_ = std::move(before);
+  return success();
+}
+
+Result<std::shared_ptr<const VoxelGrid>> SearchMap::follow(std::shared_ptr<const VoxelGrid> map) {
+  const bool wants_unknown = unknown_ == UnknownRule::free || unknown_ == UnknownRule::costly;
   if (wants_unknown && map->unknown_is_occupied && !map->known.empty()) {
     return fail(ErrorCode::invalid_parameter,
-                "unknown is " + std::string(to_word(config.unknown)) +
-                    ", but the map counts unknown space as occupied: set map_server's unknown to "
-                    "free, or path_search's to as_mapped");
+                fmt::format("unknown is {}, but the map counts unknown space as occupied: set "
+                            "map_server's unknown to free, or path_search's to as_mapped",
+                            to_word(unknown_)));
   }
-  const bool blocks = config.unknown == UnknownRule::blocked && !map->unknown_is_occupied;
-  if (!box && !blocks) return map;
-  VoxelGrid own;
-  if (box) {
-    auto cut = crop(*map, *box);
-    if (!cut) return cut.error();
-    own = *std::move(cut);
-  } else {
-    own = *map;
+  const bool blocks =
+      unknown_ == UnknownRule::blocked && !map->unknown_is_occupied && !map->known.empty();
+  if (!box_ && !blocks) return map;
+  const bool follows = source_ != nullptr && blocks == blocks_unknown_ &&
+                       source_->geometry == map->geometry &&
+                       source_->known.empty() == map->known.empty();
+  blocks_unknown_ = blocks;
+  if (!follows) {
+    if (auto status = begin(*map); !status) return status.error();
   }
-  if (blocks) block_unknown(own);
-  return std::shared_ptr<const VoxelGrid>(std::make_shared<VoxelGrid>(std::move(own)));
+  derive(*map);
+  derived_.version = map->version;
+  derived_.inflation_m = map->inflation_m;
+  derived_.unknown_is_occupied = map->unknown_is_occupied || blocks;
+  derived_.unknown_grows = map->unknown_grows;
+  source_ = std::move(map);
+  return std::shared_ptr<const VoxelGrid>(std::make_shared<VoxelGrid>(derived_));
 }
 
 }  // namespace goshawk::path_search

@@ -32,7 +32,7 @@ class WeightedSearch final : public GridPlanner {
   using GridPlanner::search;
   using GridPlanner::set_map;
   std::string_view name() const override { return name_; }
-  void set_map(const BitGrid& blocked, const BitGrid* costly) override;
+  void set_map(const BitGrid& blocked, const BitGrid* known) override;
   Status search(const GridQuery& query, VoxelPath& path) override;
 
  private:
@@ -68,7 +68,7 @@ class WeightedSearch final : public GridPlanner {
   Counters counters_;
 };
 
-void WeightedSearch::set_map(const BitGrid& blocked, const BitGrid* costly) {
+void WeightedSearch::set_map(const BitGrid& blocked, const BitGrid* known) {
   const std::int64_t nodes = blocked.empty() ? 0 : ObstacleBits::nodes_for(blocked.size());
   if (nodes == 0 || nodes > std::int64_t{1} << 31) {
     labels_.clear();
@@ -85,7 +85,7 @@ void WeightedSearch::set_map(const BitGrid& blocked, const BitGrid* costly) {
     query_ = 0;
   }
   bits_.assign(blocked);
-  field_.assign(blocked, costly);
+  field_.assign(blocked, known);
 }
 
 Status WeightedSearch::search(const GridQuery& query, VoxelPath& path) {

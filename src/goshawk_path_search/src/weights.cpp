@@ -1,6 +1,9 @@
 #include "goshawk/path_search/weights.hpp"
 
 #include <algorithm>
+#include <bit>
+
+#include "goshawk/core/inflation.hpp"
 
 namespace goshawk::path_search {
 namespace {
@@ -18,58 +21,114 @@ CostField::CostField(const Weights& weights) : weights_(weights) {
   }
 }
 
-void CostField::assign(const BitGrid& blocked, const BitGrid* costly) {
-  size_ = blocked.size();
-  classes_.assign(std::size_t(blocked.voxels()), 0);
-  if (weights_.near_obstacles()) measure_distances(blocked);
-  if (costly == nullptr || weights_.unknown == 0.0) return;
-  for (int z = 0; z < size_.z; ++z) {
-    for (int y = 0; y < size_.y; ++y) {
-      for (int x = 0; x < size_.x; ++x) {
-        if (costly->get({x, y, z})) classes_[flat({x, y, z})] |= kCostly;
+void CostField::assign(const BitGrid& blocked, const BitGrid* known) {
+  if (weights_.unknown == 0.0) known = nullptr;
+  if (!(blocked.size() == size_) || known_.empty() != (known == nullptr)) {
+    size_ = blocked.size();
+    classes_.assign(std::size_t(blocked.voxels()), 0);
+    blocked_ = BitGrid();
+    known_ = known == nullptr ? BitGrid() : BitGrid(size_, false, true);
+  }
+  if (weights_.near_obstacles()) {
+    if (blocked_.empty()) {
+      measure(blocked, {{}, size_});
+    } else {
+      for_changed_chunks(blocked_, blocked, [&](BitGrid::Rows rows) {
+        measure(blocked, widened(changed_within(blocked, rows)));
+      });
+    }
+    blocked_ = blocked;
+  }
+  if (known == nullptr) return;
+  for_changed_chunks(known_, *known, [&](BitGrid::Rows rows) { mark_costly(*known, rows); });
+  known_ = *known;
+}
+
+CostField::Box CostField::widened(const Box& box) const {
+  const int by = weights_.reach_voxels;
+  return {{std::max(0, box.lo.x - by), std::max(0, box.lo.y - by), std::max(0, box.lo.z - by)},
+          {std::min(size_.x, box.hi.x + by), std::min(size_.y, box.hi.y + by),
+           std::min(size_.z, box.hi.z + by)}};
+}
+
+// The part of a chunk, whole words along x, that holds all voxels that differ.
+CostField::Box CostField::changed_within(const BitGrid& blocked, BitGrid::Rows rows) const {
+  int first = int(blocked.words_per_row()), last = 0;
+  for (int z = rows.z0; z < rows.z1; ++z) {
+    for (int y = rows.y0; y < rows.y1; ++y) {
+      const auto *before = blocked_.row(y, z), *after = blocked.row(y, z);
+      for (int w = 0; w < int(blocked.words_per_row()); ++w) {
+        if (before[w] == after[w]) continue;
+        first = std::min(first, w);
+        last = std::max(last, w);
+      }
+    }
+  }
+  return {{64 * first, rows.y0, rows.z0}, {std::min(size_.x, 64 * (last + 1)), rows.y1, rows.z1}};
+}
+
+// The chessboard distance: what is blocked grows by one voxel at a time. What lies farther from the
+// box than the reach does not matter, and the window's outside is nobody's obstacle; the map's is.
+void CostField::measure(const BitGrid& blocked, const Box& box) {
+  const Box window = widened(box);
+  const Index3 corner{window.lo.x & ~63, window.lo.y, window.lo.z};
+  BitGrid level(window.hi - corner, false);
+  for (int z = corner.z; z < window.hi.z; ++z) {
+    for (int y = corner.y; y < window.hi.y; ++y) {
+      const auto* from = blocked.row(y, z) + corner.x / 64;
+      auto* to = level.mutable_row(y - corner.y, z - corner.z);
+      std::copy_n(from, level.words_per_row(), to);
+      const int used = level.size().x % 64;
+      if (used != 0) to[level.words_per_row() - 1] &= ~(~BitGrid::Word{0} << used);
+    }
+  }
+  const int reach = weights_.reach_voxels;
+  for (int z = box.lo.z; z < box.hi.z; ++z) {
+    for (int y = box.lo.y; y < box.hi.y; ++y) {
+      for (int x = box.lo.x; x < box.hi.x; ++x) {
+        const int to_edge = 1 + std::min({x, y, z, size_.x - 1 - x, size_.y - 1 - y,
+                                          size_.z - 1 - z});
+        std::uint8_t& held = classes_[flat({x, y, z})];
+        held = std::uint8_t((held & kCostly) | std::min(to_edge, reach + 1));
+      }
+    }
+  }
+  write(level, corner, box, 0);
+  for (int steps = 1; steps <= reach; ++steps) {
+    level = inflate(level, 0.5, 1.0).value();
+    write(level, corner, box, steps);
+  }
+}
+
+// Voxels of a level that no lower one had are that many steps from what is blocked.
+void CostField::write(const BitGrid& level, Index3 corner, const Box& box, int steps) {
+  for (int z = box.lo.z; z < box.hi.z; ++z) {
+    for (int y = box.lo.y; y < box.hi.y; ++y) {
+      std::uint8_t* row = classes_.data() + flat({0, y, z});
+      const auto* words = level.row(y - corner.y, z - corner.z);
+      for (int w = (box.lo.x - corner.x) / 64; corner.x + 64 * w < box.hi.x; ++w) {
+        for (BitGrid::Word bits = words[w]; bits != 0; bits &= bits - 1) {
+          const int x = corner.x + 64 * w + std::countr_zero(bits);
+          if (x < box.lo.x || x >= box.hi.x || (row[x] & ~kCostly) <= steps) continue;
+          row[x] = std::uint8_t((row[x] & kCostly) | steps);
+        }
       }
     }
   }
 }
 
-// The chessboard distance, up to reach + 1, in two passes over half of the neighbours each
-// (Rosenfeld and Pfaltz 1968).
-void CostField::measure_distances(const BitGrid& blocked) {
-  const auto far = std::uint8_t(weights_.reach_voxels + 1);
-  const auto visit = [&](Index3 at, int sign) {
-    if (blocked.get(at)) {
-      classes_[flat(at)] = 0;
-    } else {
-      if (sign < 0) classes_[flat(at)] = far;
-      lower(at, sign);
-    }
-  };
-  for (int z = 0; z < size_.z; ++z) {
-    for (int y = 0; y < size_.y; ++y) {
-      for (int x = 0; x < size_.x; ++x) visit({x, y, z}, -1);
+void CostField::mark_costly(const BitGrid& known, BitGrid::Rows rows) {
+  for (int z = rows.z0; z < rows.z1; ++z) {
+    for (int y = rows.y0; y < rows.y1; ++y) {
+      std::uint8_t* row = classes_.data() + flat({0, y, z});
+      for (int w = 0; w < int(known.words_per_row()); ++w) {
+        BitGrid::Word changed = known_.row(y, z)[w] ^ known.row(y, z)[w];
+        for (; changed != 0; changed &= changed - 1) {
+          row[64 * w + std::countr_zero(changed)] ^= kCostly;
+        }
+      }
     }
   }
-  for (int z = size_.z; z-- > 0;) {
-    for (int y = size_.y; y-- > 0;) {
-      for (int x = size_.x; x-- > 0;) visit({x, y, z}, 1);
-    }
-  }
-}
-
-// To one more than the nearest of the neighbours that come before (sign -1) or after in memory.
-void CostField::lower(Index3 at, int sign) {
-  std::uint8_t& held = classes_[flat(at)];
-  const auto look = [&](int dx, int dy, int dz) {
-    const Index3 n{at.x + dx, at.y + dy, at.z + dz};
-    const bool inside = unsigned(n.x) < unsigned(size_.x) && unsigned(n.y) < unsigned(size_.y) &&
-                        unsigned(n.z) < unsigned(size_.z);
-    held = std::min(held, std::uint8_t(inside ? classes_[flat(n)] + 1 : 1));
-  };
-  for (int a = -1; a <= 1; ++a) {
-    for (int b = -1; b <= 1; ++b) look(a, b, sign);
-    look(a, sign, 0);
-  }
-  look(sign, 0, 0);
 }
 
 }  // namespace goshawk::path_search

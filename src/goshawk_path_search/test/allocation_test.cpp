@@ -37,10 +37,10 @@ TEST(PathSearch, AllocatesNothingInARepeatedQuery) {
       config.pruning = pruning;
       reference::Random random(13);
       auto grid = std::make_shared<VoxelGrid>();
-      grid->occupied = reference::box_map({60, 60, 20}, 0.2, random);
-      grid->geometry.size = grid->occupied.size();
-      const Vec3 start = grid->geometry.center(reference::free_voxel(grid->occupied, random));
-      const Vec3 goal = grid->geometry.center(reference::free_voxel(grid->occupied, random));
+      grid->grown = reference::box_map({60, 60, 20}, 0.2, random);
+      grid->geometry.size = grid->grown.size();
+      const Vec3 start = grid->geometry.center(reference::free_voxel(grid->grown, random));
+      const Vec3 goal = grid->geometry.center(reference::free_voxel(grid->grown, random));
       PathSearch search = std::move(PathSearch::create(config)).value();
       search.set_map(grid);
       PlannedPath path;

@@ -52,6 +52,32 @@ TEST(ObstacleBits, FollowAMapThatChanges) {
   }
 }
 
+// Each version shares chunks with the one before, as updates make them.
+TEST(ObstacleBits, FollowUpdatesOfAMapLikeANewMap) {
+  Random random(10);
+  for (int n = 0; n < 10; ++n) {
+    BitGrid map = reference::noise_map({70, 20, 19}, 0.2, random);
+    ObstacleBits kept;
+    kept.assign(map);
+    for (int update = 0; update < 20; ++update) {
+      for (int k = random.below(30); k > 0; --k) {
+        map.set({random.below(70), random.below(20), random.below(19)}, random.chance(0.5));
+      }
+      kept.assign(map);
+      ObstacleBits fresh;
+      fresh.assign(map);
+      for (int k = 0; k < 70 * 20 * 19; ++k) {
+        const Index3 at{k % 70, k / 70 % 20, k / 70 / 20};
+        ASSERT_EQ(kept.block(kept.node(at)), fresh.block(fresh.node(at)));
+        for (int axis = 0; axis < 3 && !map.get(at); ++axis) {
+          ASSERT_EQ(kept.straight_jump(CornerRule::no_squeeze, axis, -1, at),
+                    fresh.straight_jump(CornerRule::no_squeeze, axis, -1, at));
+        }
+      }
+    }
+  }
+}
+
 // Voxel by voxel, with the rules for one move: how far does a straight jump go?
 int walked_jump(const BitGrid& map, CornerRule rule, int direction, Index3 at) {
   ObstacleBits bits;

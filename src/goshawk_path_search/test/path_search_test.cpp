@@ -42,8 +42,8 @@ TEST(PathSearch, GivesFreeSegmentsBetweenTheExactEnds) {
   for (int n = 0; n < 1500; ++n) {
     const auto grid = grid_of(reference::any_map(random));
     search.set_map(grid);
-    const Index3 s = reference::free_voxel(grid->occupied, random);
-    const Index3 g = reference::free_voxel(grid->occupied, random);
+    const Index3 s = reference::free_voxel(grid->grown, random);
+    const Index3 g = reference::free_voxel(grid->grown, random);
     const Vec3 start = inside(*grid, s, random), goal = inside(*grid, g, random);
     const auto path = search.plan(start, goal);
     if (!path.ok()) continue;
@@ -57,8 +57,8 @@ TEST(PathSearch, GivesFreeSegmentsBetweenTheExactEnds) {
     ASSERT_NEAR(path->raw_length_m, sum_of(path->raw_map), 1e-12);
     ASSERT_NEAR(path->pruned_length_m, sum_of(path->waypoints_map), 1e-12);
     ASSERT_LE(path->pruned_length_m, path->raw_length_m * (1.0 + 1e-12));
-    const auto truth = reference::distances(grid->occupied, s, false);
-    const double cost = 0.2 * reference::distance_to(truth, grid->occupied.size(), g);
+    const auto truth = reference::distances(grid->grown, s, false);
+    const double cost = 0.2 * reference::distance_to(truth, grid->grown.size(), g);
     ASSERT_NEAR(path->cost, cost, 1e-9 * (1.0 + cost));
     ASSERT_EQ(path->implementation, "jastar");
   }
@@ -143,8 +143,8 @@ TEST(PathSearch, ANewConfigAnswersAsOneThatBeganWithIt) {
   ASSERT_TRUE(changed.reconfigure(Config{}));
   for (int n = 0; n < 30; ++n) {
     const auto grid = grid_of(reference::any_map(random));
-    const Vec3 start = inside(*grid, reference::free_voxel(grid->occupied, random), random);
-    const Vec3 goal = inside(*grid, reference::free_voxel(grid->occupied, random), random);
+    const Vec3 start = inside(*grid, reference::free_voxel(grid->grown, random), random);
+    const Vec3 goal = inside(*grid, reference::free_voxel(grid->grown, random), random);
     fresh.set_map(grid);
     changed.set_map(grid);
     (void)changed.plan(start, goal);
@@ -171,7 +171,7 @@ TEST(PathSearch, AConfigThatTheMapCannotServeIsRefusedAndTheOldOneStays) {
   bad = Config{};
   bad.z_weight = -1.0;
   EXPECT_EQ(search.reconfigure(bad).code(), ErrorCode::invalid_parameter);
-  const Vec3 start = inside(*grid, reference::free_voxel(grid->occupied, random), random);
+  const Vec3 start = inside(*grid, reference::free_voxel(grid->grown, random), random);
   EXPECT_TRUE(search.plan(start, start));
 }
 

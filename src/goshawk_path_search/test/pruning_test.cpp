@@ -196,12 +196,12 @@ TEST(Relaxing, InTheStageIsNoLongerThanShortestAndFreeInMetres) {
   auto other = std::move(PathSearch::create(relaxed)).value();
   for (int n = 0; n < 150; ++n) {
     auto grid = std::make_shared<VoxelGrid>();
-    grid->occupied = reference::box_map({30, 30, 8}, 0.3, random);
-    grid->geometry = {Vec3(-1.37, 2.11, 0.53), 0.17, grid->occupied.size()};
+    grid->grown = reference::box_map({30, 30, 8}, 0.3, random);
+    grid->geometry = {Vec3(-1.37, 2.11, 0.53), 0.17, grid->grown.size()};
     one.set_map(grid);
     other.set_map(grid);
-    const Vec3 s = grid->geometry.center(reference::free_voxel(grid->occupied, random));
-    const Vec3 g = grid->geometry.center(reference::free_voxel(grid->occupied, random));
+    const Vec3 s = grid->geometry.center(reference::free_voxel(grid->grown, random));
+    const Vec3 g = grid->geometry.center(reference::free_voxel(grid->grown, random));
     const auto a = one.plan(s, g), b = other.plan(s, g);
     ASSERT_EQ(a.code(), b.code());
     if (!a.ok()) continue;

@@ -82,11 +82,11 @@ TEST(Queries, WithoutAGoalAreRefused) {
 // The definition of the cost, voxel by voxel.
 struct Truth {
   const BitGrid& blocked;
-  const BitGrid& costly;
+  const BitGrid& known;
   Weights weights;
 
   double factor(Index3 at) const {
-    double f = 1.0 + (costly.get(at) ? weights.unknown : 0.0);
+    double f = 1.0 + (known.get(at) ? 0.0 : weights.unknown);
     if (!weights.near_obstacles()) return f;
     for (int k = 1; k <= weights.reach_voxels; ++k) {
       if (!blocked_within(at, k)) continue;
@@ -110,18 +110,46 @@ TEST(Weights, AreWhatTheyAreDefinedAsEverywhere) {
   Random random(22);
   for (int n = 0; n < 60; ++n) {
     const BitGrid map = reference::any_map(random);
-    const BitGrid costly = reference::noise_map(map.size(), 0.3, random);
+    const BitGrid known = reference::noise_map(map.size(), 0.7, random);
     const Weights weights{.climb = 0.0,
                           .unknown = random.uniform(0.0, 3.0),
                           .clearance = random.uniform(0.0, 3.0),
                           .reach_voxels = random.below(5)};
     CostField field(weights);
-    field.assign(map, &costly);
-    const Truth truth{map, costly, weights};
+    field.assign(map, &known);
+    const Truth truth{map, known, weights};
     for (int k = 0; k < 100; ++k) {
       const Index3 at = reference::free_voxel(map, random);
       if (map.get(at)) continue;
       ASSERT_DOUBLE_EQ(field.factor(at), truth.factor(at)) << to_text(at);
+    }
+  }
+}
+
+TEST(Weights, FollowAMapThatChanges) {
+  Random random(25);
+  for (int n = 0; n < 20; ++n) {
+    const Index3 size{40 + random.below(100), 5 + random.below(30), 5 + random.below(20)};
+    BitGrid map = reference::noise_map(size, random.uniform(0.0, 0.02), random);
+    BitGrid known = reference::noise_map(size, 0.7, random);
+    const Weights weights{.unknown = random.chance(0.3) ? 0.0 : 1.3,
+                          .clearance = random.chance(0.2) ? 0.0 : 2.0,
+                          .reach_voxels = 1 + random.below(6)};
+    CostField kept(weights);
+    kept.assign(map, &known);
+    for (int update = 0; update < 6; ++update) {
+      for (int k = random.below(12); k > 0; --k) {
+        const Index3 at{random.below(size.x), random.below(size.y), random.below(size.z)};
+        map.set(at, random.chance(0.5));
+        known.set(at, random.chance(0.5));
+      }
+      kept.assign(map, &known);
+      CostField fresh(weights);
+      fresh.assign(map, &known);
+      for (int k = 0; k < size.x * size.y * size.z; ++k) {
+        const Index3 at{k % size.x, k / size.x % size.y, k / size.x / size.y};
+        ASSERT_EQ(kept.factor(at), fresh.factor(at)) << to_text(at);
+      }
     }
   }
 }
@@ -131,7 +159,7 @@ TEST(WeightedSearch, IsExactAboutItsCost) {
     Random random(23);
     for (int n = 0; n < 700; ++n) {
       const BitGrid map = reference::any_map(random);
-      const BitGrid costly = reference::noise_map(map.size(), random.uniform(), random);
+      const BitGrid known = reference::noise_map(map.size(), random.uniform(), random);
       const Weights weights{.climb = random.chance(0.5) ? random.uniform(0.0, 5.0) : 0.0,
                             .unknown = random.chance(0.5) ? random.uniform(0.0, 5.0) : 0.0,
                             .clearance = random.chance(0.5) ? random.uniform(0.0, 5.0) : 0.0,
@@ -140,7 +168,7 @@ TEST(WeightedSearch, IsExactAboutItsCost) {
       const auto goals = random_goals(map, 1 + random.below(2), random);
       if (map.get(start) || goals.empty()) continue;
       CostField field(weights);
-      field.assign(map, &costly);
+      field.assign(map, &known);
       const auto cost = [&](Index3 from, Index3 to) {
         const double length = std::hypot(double(to.x - from.x), to.y - from.y, to.z - from.z);
         return length * field.factor(to) + weights.climb * std::max(0, to.z - from.z);
@@ -153,7 +181,7 @@ TEST(WeightedSearch, IsExactAboutItsCost) {
       for (const bool heuristic : {true, false}) {
         const auto rule = squeeze ? CornerRule::squeeze : CornerRule::no_squeeze;
         const auto planner = make_weighted_search("weighted", heuristic, rule, weights);
-        planner->set_map(map, &costly);
+        planner->set_map(map, &known);
         VoxelPath path;
         const auto status =
             planner->search({.start = End::center_of(start), .goals = goals, .stop = {}}, path);

@@ -160,7 +160,7 @@ Index3 free_voxel(const BitGrid& blocked, Random& random) {
 std::shared_ptr<goshawk::VoxelGrid> grid_of(BitGrid blocked) {
   auto grid = std::make_shared<goshawk::VoxelGrid>();
   grid->geometry = {goshawk::Vec3(-1.0, 2.0, 0.5), 0.2, blocked.size()};
-  grid->occupied = std::move(blocked);
+  grid->grown = std::move(blocked);
   return grid;
 }
 

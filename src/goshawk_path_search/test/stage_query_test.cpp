@@ -52,7 +52,7 @@ TEST(MovedEnds, GoToTheNearestFreeVoxelWithinTheRadius) {
     for (int z = 0; z < s.z; ++z) {
       for (int y = 0; y < s.y; ++y) {
         for (int x = 0; x < s.x; ++x) {
-          if (grid->occupied.get({x, y, z})) continue;
+          if (grid->grown.get({x, y, z})) continue;
           nearest = std::min(nearest, (grid->geometry.center({x, y, z}) - goal).norm());
         }
       }
@@ -245,6 +245,61 @@ TEST(Request, IsSearchedToWhicheverGoalIsNearest) {
   EXPECT_EQ(path->waypoints_map.back(), request.other_goals_map[1]);
 }
 
+// What a search sees, by its definition.
+void expect_seen(const VoxelGrid& seen, const VoxelGrid& map, UnknownRule rule,
+                 const std::optional<SearchBox>& box) {
+  std::int64_t inside = 0;
+  const Index3 n = map.geometry.size;
+  for (int k = 0; k < n.x * n.y * n.z; ++k) {
+    const Index3 i{k % n.x, k / n.x % n.y, k / n.x / n.y};
+    const Vec3 center = map.geometry.center(i);
+    if (box && ((center.array() < box->lower_map.array()).any() ||
+                (center.array() > box->upper_map.array()).any())) {
+      continue;
+    }
+    ++inside;
+    const auto at = seen.geometry.index_of(center);
+    ASSERT_TRUE(at) << to_text(i);
+    const bool blocked = rule == UnknownRule::blocked && !map.is_known(i);
+    ASSERT_EQ(seen.grown.get(*at), map.grown.get(i) || blocked) << to_text(i);
+    ASSERT_EQ(seen.is_known(*at), map.is_known(i)) << to_text(i);
+  }
+  EXPECT_EQ(seen.grown.voxels(), inside);
+  EXPECT_EQ(seen.version, map.version);
+  EXPECT_TRUE(seen.check());
+}
+
+TEST(SearchMap, FollowsAMapThatChanges) {
+  Random random(35);
+  for (int n = 0; n < 40; ++n) {
+    auto grid = grid_of(BitGrid({20 + random.below(100), 30, 20}, true));
+    const Index3 size = grid->geometry.size;
+    if (random.chance(0.8)) grid->known = BitGrid(size, false, random.chance(0.5));
+    grid->unknown_is_occupied = false;
+    const auto rule = random.chance(0.5) ? UnknownRule::blocked : UnknownRule::free;
+    std::optional<SearchBox> box;
+    if (random.chance(0.7)) {
+      const Vec3 lower(random.uniform(0.0, 2.0), random.uniform(0.0, 3.0), random.uniform());
+      box = SearchBox{lower, lower + Vec3(random.uniform(0.5, 20.0), 2.0, 1.5)};
+    }
+    SearchMap followed(rule, box);
+    for (int update = 0; update < 8; ++update) {
+      auto next = std::make_shared<VoxelGrid>(*grid);
+      ++next->version;
+      for (int k = random.below(40); k > 0; --k) {
+        const Index3 at{random.below(size.x), random.below(size.y), random.below(size.z)};
+        next->grown.set(at, random.chance(0.6));
+        if (!next->known.empty()) next->known.set(at, random.chance(0.6));
+      }
+      if (random.chance(0.1)) next->geometry.origin_map.x() += 0.4;
+      grid = next;
+      const auto seen = followed.follow(grid);
+      ASSERT_TRUE(seen.ok()) << seen.error().message;
+      ASSERT_NO_FATAL_FAILURE(expect_seen(**seen, *grid, rule, box));
+    }
+  }
+}
+
 TEST(Weights, BendThePathAsTheyShould) {
   // A pillar in the middle of a room: with clearance the path keeps away from it.
   BitGrid blocked({21, 21, 9}, true);
@@ -302,8 +357,8 @@ TEST(SamplingPlanners, FindFreePathsThatRepeatBitForBit) {
     PathSearch search = stage(config, grid), again = stage(config, grid);
     int found = 0;
     for (int n = 0; n < 6; ++n) {
-      const Vec3 start = grid->geometry.center(reference::free_voxel(grid->occupied, random));
-      const Vec3 goal = grid->geometry.center(reference::free_voxel(grid->occupied, random));
+      const Vec3 start = grid->geometry.center(reference::free_voxel(grid->grown, random));
+      const Vec3 goal = grid->geometry.center(reference::free_voxel(grid->grown, random));
       const auto path = search.plan(start, goal);
       const auto repeated = again.plan(start, goal);
       ASSERT_EQ(path.code(), repeated.code());
@@ -373,8 +428,8 @@ TEST(FclValidity, GivesSamplingPlannersPathsThatAreFreeOnTheGrid) {
     PathSearch search = stage(config, grid), again = stage(config, grid);
     int found = 0;
     for (int n = 0; n < 4; ++n) {
-      const Vec3 start = grid->geometry.center(reference::free_voxel(grid->occupied, random));
-      const Vec3 goal = grid->geometry.center(reference::free_voxel(grid->occupied, random));
+      const Vec3 start = grid->geometry.center(reference::free_voxel(grid->grown, random));
+      const Vec3 goal = grid->geometry.center(reference::free_voxel(grid->grown, random));
       const auto path = search.plan(start, goal);
       if (!path.ok()) continue;
       ++found;

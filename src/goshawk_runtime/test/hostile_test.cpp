@@ -214,7 +214,7 @@ TEST(PayloadCheck, PassesWhatTheGeneratedCodeWrites) {
   goshawk_msgs::msg::VoxelGridUpdate update;
   update.header().frame_id("m");
   update.bricks().resize(2);
-  update.bricks()[0].occupied().resize(3);
+  update.bricks()[0].grown().resize(3);
   expect_exact(update);
   visualization_msgs::msg::MarkerArray markers;
   markers.markers().resize(3);

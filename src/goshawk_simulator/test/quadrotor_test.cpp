@@ -285,9 +285,9 @@ TEST(Quadrotor, WithoutCommandsItHoldsThenLandsStraightDown) {
 std::shared_ptr<VoxelGrid> room(double table_m) {
   auto grid = std::make_shared<VoxelGrid>();
   grid->geometry = {.origin_map = Vec3::Zero(), .resolution_m = 0.1, .size = {30, 30, 30}};
-  grid->occupied = BitGrid(grid->geometry.size, true);
+  grid->grown = BitGrid(grid->geometry.size, true);
   for (int z = 0; 0.1 * z < table_m - 0.05; ++z) {
-    for (int y = 0; y < 30; ++y) grid->occupied.set_run(5, 20, y, z, true);
+    for (int y = 0; y < 30; ++y) grid->grown.set_run(5, 20, y, z, true);
   }
   return grid;
 }

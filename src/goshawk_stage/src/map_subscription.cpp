@@ -19,6 +19,11 @@ MapSubscription::MapSubscription(runtime::Node& node, StageReporter& reporter, C
 void MapSubscription::on_grid(const msg::VoxelGrid& m) {
   auto grid = conversions::from_msg(m);
   if (!grid) return reporter_.fault(grid.error());
+  if (grid_ != nullptr) {
+    grid->grown.share_equal_chunks(grid_->grown);
+    grid->known.share_equal_chunks(grid_->known);
+    grid->raw.share_equal_chunks(grid_->raw);
+  }
   take(*std::move(grid));
 }
 
@@ -26,7 +31,7 @@ void MapSubscription::on_update(const msg::VoxelGridUpdate& m) {
   if (grid_ == nullptr || grid_->version != m.from_version()) return;
   const auto update = conversions::from_msg(m);
   if (!update) return reporter_.fault(update.error());
-  VoxelGrid grid = *grid_;
+  VoxelGrid grid = *grid_;  // shares its bits
   if (auto status = apply(grid, *update); !status) return reporter_.fault(status.error());
   take(std::move(grid));
 }

@@ -28,9 +28,9 @@ T need(Result<T> result, const char* what) {
 std::shared_ptr<const VoxelGrid> make_map() {
   auto grid = std::make_shared<VoxelGrid>();
   grid->geometry = {Vec3::Zero(), 0.2, {30, 40, 20}};
-  grid->occupied = BitGrid(grid->geometry.size, true);
+  grid->grown = BitGrid(grid->geometry.size, true);
   for (int z = 0; z < 20; ++z) {
-    for (int x = 0; x < 22; ++x) grid->occupied.set({x, 20, z}, true);
+    for (int x = 0; x < 22; ++x) grid->grown.set({x, 20, z}, true);
   }
   return grid;
 }
@@ -43,11 +43,12 @@ CertifiedTrajectory plan(const std::shared_ptr<const VoxelGrid>& map, const Flat
   auto builder = need(corridor_builder::CorridorBuilder::create({}), "builder");
   const Corridor corridor = need(builder.build(*map, path.waypoints_map), "corridor");
   auto optimizer = need(trajectory_optimizer::TrajectoryOptimizer::create({}), "optimizer");
-  const auto solution = need(optimizer.optimise(corridor, start, goal, limits), "trajectory");
+  const PlanRequest request{.start = start, .goal = goal, .limits = limits};
+  const auto solution = need(optimizer.optimise(request, corridor), "trajectory");
   std::printf("path %.9f m, %zu polytopes, %zu pieces, %.9f s\n", path.pruned_length_m,
-              corridor.polytopes.size(), solution.trajectory.pieces.size(),
-              solution.trajectory.duration_s());
-  return need(certify(solution.trajectory, corridor.polytopes, limits, start, goal), "certificate");
+              corridor.polytopes.size(), solution.trajectory().pieces.size(),
+              solution.trajectory().duration_s());
+  return solution.certified;
 }
 
 tracker::CommittedTrajectory to_track(const CommittedTrajectory& committed) {

@@ -24,7 +24,7 @@ static long voxels(const Grid* g) { return (long)g->size_x * g->size_y * g->size
 static bool blocked(const Grid* g, long x, long y, long z) {
   if (x < 0 || y < 0 || z < 0 || x >= g->size_x || y >= g->size_y || z >= g->size_z) return true;
   const long words = (g->size_x + 63) / 64;
-  return (g->occupied._buffer[(z * g->size_y + y) * words + x / 64] >> (x % 64)) & 1;
+  return (g->grown._buffer[(z * g->size_y + y) * words + x / 64] >> (x % 64)) & 1;
 }
 
 enum { OUTSIDE = -1, OCCUPIED = -2 };

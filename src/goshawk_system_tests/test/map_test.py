@@ -127,7 +127,7 @@ class LiveMap(MapCase):
                 row = 8 * at[2] + at[1]
                 if not bits_of(brick["known"], row, at[0]):
                     return "unknown"
-                return "occupied" if bits_of(brick["occupied"], row, at[0]) else "free"
+                return "occupied" if bits_of(brick["grown"], row, at[0]) else "free"
         return "unchanged"
 
     def check_ray(self, bricks, origin):
@@ -196,7 +196,7 @@ class BigMap(MapCase):
         self.assertEqual([grid["size_x"], grid["size_y"], grid["size_z"]], size)
         resident_mb, peak_mb = self.memory(server.pid)
         words = 16 * 1000 * 100
-        packed_mb = 2 * words * 8 / 2**20  # occupied and known
+        packed_mb = 2 * words * 8 / 2**20  # grown and known
         note(f"world made in {made.seconds:.1f} s; ready after {ready_s:.1f} s; late joiner after "
              f"{late_s:.2f} s; resident {resident_mb:.0f} MB (at most {peak_mb:.0f}), of that "
              f"tree and process {tree_mb:.0f} MB; bit-packed {packed_mb:.1f} MB: "

@@ -56,9 +56,24 @@ Goshawk.Voxels = class {
     for (let z = first[2]; z < last[2]; ++z) for (let y = first[1]; y < last[1]; ++y) {
       const word = 8 * (8 * (z & 7) + (y & 7)), row = this.size[0] * (y + this.size[1] * z);
       for (let x = first[0]; x < last[0]; ++x) {
-        this.cells[row + x] = (brick.occupied[word + ((x & 63) >> 3)] >> (x & 7)) & 1;
+        this.cells[row + x] = (brick.grown[word + ((x & 63) >> 3)] >> (x & 7)) & 1;
       }
     }
+  }
+
+  // The window moves by whole bricks, (64, 8, 8) voxels; what comes in is `value`, 0 or 1.
+  moveWindow(bricks, value) {
+    const by = [64 * bricks[0], 8 * bricks[1], 8 * bricks[2]];
+    if (!by.some(v => v)) return;
+    const [nx, ny, nz] = this.size, old = this.cells, inside = (i, n) => i >= 0 && i < n;
+    this.cells = new Uint8Array(old.length).fill(value);
+    for (let z = 0; z < nz; ++z) for (let y = 0; y < ny; ++y) {
+      if (!inside(y + by[1], ny) || !inside(z + by[2], nz)) continue;
+      const from = Math.min(nx, Math.max(0, by[0])), to = Math.max(0, Math.min(nx, nx + by[0]));
+      const row = nx * (y + by[1] + ny * (z + by[2]));
+      if (from < to) this.cells.set(old.subarray(row + from, row + to), nx * (y + ny * z) + from - by[0]);
+    }
+    this.origin = this.origin.map((o, axis) => o + this.resolution * by[axis]);
   }
 
   upper(axis) { return this.origin[axis] + this.size[axis] * this.resolution; }

@@ -71,8 +71,9 @@ Goshawk.LivePage = class extends Goshawk.Page {
   onGrown(m) {
     if (!this.view) return;
     const voxels = Goshawk.Voxels.fromWords(
-        xyz(m.origin), m.resolution, [m.size_x, m.size_y, m.size_z], m.occupied);
+        xyz(m.origin), m.resolution, [m.size_x, m.size_y, m.size_z], m.grown);
     voxels.version = m.version;
+    voxels.unknown = m.unknown_is_occupied ? 1 : 0;
     this.showMap('grown', voxels);
   }
 
@@ -80,6 +81,7 @@ Goshawk.LivePage = class extends Goshawk.Page {
   onUpdate(m) {
     const grown = this.view && this.view.maps.grown;
     if (!grown || grown.version !== m.from_version) return;
+    grown.moveWindow([m.shift_word_x, m.shift_brick_y, m.shift_brick_z], grown.unknown);
     for (const brick of m.bricks) grown.setBrick(brick);
     grown.version = m.to_version;
     this.mapUpdates = (this.mapUpdates || 0) + 1;

@@ -72,12 +72,12 @@ const obstaclesOnce = remembered(m => {
 });
 const grownOnce = remembered(m => {
   const voxels = Goshawk.Voxels.fromBigWords(
-      xyz(m.origin), m.resolution, [m.size_x, m.size_y, m.size_z], m.occupied);
+      xyz(m.origin), m.resolution, [m.size_x, m.size_y, m.size_z], m.grown);
   return [mapTriangles(voxels, shade(kTheme.grown), shade(kTheme.grown), 0.12)];
 });
 
 const obstacles = m => scene([entity('obstacles', m.header.stamp, {triangles: obstaclesOnce(m.data, m)})]);
-const grown = m => scene([entity('grown', m.header.stamp, {triangles: grownOnce(m.occupied, m)})]);
+const grown = m => scene([entity('grown', m.header.stamp, {triangles: grownOnce(m.grown, m)})]);
 
 function path(m) {
   return scene([

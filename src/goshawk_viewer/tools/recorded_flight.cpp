@@ -136,7 +136,7 @@ Status RecordedFlight::take_octomap(const Bytes& bytes) {
   if (!voxels) return voxels.error();
   obstacles_.emplace();
   obstacles_->geometry = voxels->geometry;
-  obstacles_->occupied = std::move(voxels->occupied);
+  obstacles_->grown = std::move(voxels->occupied);
   return success();
 }
 

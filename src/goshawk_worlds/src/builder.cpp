@@ -1,9 +1,10 @@
 #include "builder.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstdio>
 
 #include "goshawk/core/inflation.hpp"
 
@@ -148,9 +149,9 @@ void Builder::refresh() {
       for (std::size_t i = 0; i < occupied_.words_per_row(); ++i) row[i] &= ~clear.row(y, z)[i];
     }
   }
-  grown_ = inflate(occupied_, inflation_m_, geometry_.resolution_m).value();
-  blocked_ = grown_.count();
-  grown_ = BitGrid::from_words(size(), false, grown_.take_words()).value();
+  const BitGrid grown = inflate(occupied_, inflation_m_, geometry_.resolution_m).value();
+  blocked_ = grown.count();
+  grown_ = BitGrid::from_words(size(), false, grown.to_words()).value();
 }
 
 Status fill_to_density(Builder& builder, double density,
@@ -169,12 +170,10 @@ Status fill_to_density(Builder& builder, double density,
     }
   }
   if (std::abs(builder.share() - density) <= kDensityTolerance) return success();
-  char text[200];
-  std::snprintf(text, sizeof text,
-                "a density of %.3f was not reached, only %.3f: use a larger world, a finer "
-                "resolution, a smaller inflation or another density",
-                density, builder.share());
-  return fail(ErrorCode::invalid_parameter, text);
+  return fail(ErrorCode::invalid_parameter,
+              fmt::format("a density of {:.3f} was not reached, only {:.3f}: use a larger world, a "
+                          "finer resolution, a smaller inflation or another density",
+                          density, builder.share()));
 }
 
 }  // namespace goshawk::worlds

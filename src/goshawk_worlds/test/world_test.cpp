@@ -14,7 +14,7 @@ namespace {
 // FNV-1a over the words, byte by byte from the lowest: one number for one world.
 std::uint64_t fingerprint(const BitGrid& grid) {
   std::uint64_t hash = 0xCBF29CE484222325ULL;
-  for (BitGrid::Word word : grid.words()) {
+  for (BitGrid::Word word : grid.to_words()) {
     for (int byte = 0; byte < 8; ++byte, word >>= 8) {
       hash = (hash ^ (word & 0xFF)) * 0x100000001B3ULL;
     }

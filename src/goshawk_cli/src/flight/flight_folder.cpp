@@ -45,7 +45,7 @@ Status write_flight(const std::string& folder, const Json& summary, const Flight
                 fmt::format("{}/flight.json cannot be written: is the disk full?", folder));
   }
   if (record.flown().empty()) return success();
-  const VoxelGrid raw{.geometry = map.raw.geometry, .occupied = map.raw.occupied, .known = {}};
+  const VoxelGrid raw{.geometry = map.raw.geometry, .grown = map.raw.occupied, .known = {}};
   flight_report::Flight flight;
   flight.title = "Flight " + std::filesystem::path(folder).filename().string();
   flight.obstacles = &raw;

@@ -21,10 +21,10 @@ Result<Tour> random_tour(const std::shared_ptr<const VoxelGrid>& grid,
     Index3 i;
     do {
       i = {random.below(size.x), random.below(size.y), random.below(size.z)};
-    } while (grid->occupied.get(i));
+    } while (grid->grown.get(i));
     return grid->geometry.center(i);
   };
-  if (grid->occupied.count() == grid->occupied.voxels()) {
+  if (grid->grown.count() == grid->grown.voxels()) {
     return fail(ErrorCode::map_empty, "the map has no free voxel to fly in");
   }
   // A first point in a small closed pocket leads nowhere: others are tried.

@@ -25,16 +25,14 @@ auto run_stage(Plan& plan, std::string name, std::string implementation, Work&& 
   return std::move(result);
 }
 
-Result<map_server::OcTreePtr> read_tree(const map_server::Config& config) {
-  auto source = map_server::load_map(config.map_file, map_server::load_options(config));
-  if (!source) return source.error();
-  return source->tree;
-}
-
-Result<map_server::OcTreePtr> world_tree(const worlds::WorldSpec& spec) {
-  const auto world = worlds::make_world(spec);
+Result<map_server::MapSource> made_map(const worlds::WorldSpec& spec) {
+  auto world = worlds::make_world(spec);
   if (!world) return world.error();
-  return map_server::make_octree(world->geometry, world->occupied, {});
+  map_server::MapSource source;
+  const Index3 size = world->geometry.size;
+  source.voxels = map_server::RawVoxels{world->geometry, std::move(world->occupied),
+                                        BitGrid(size, false, true)};
+  return source;
 }
 
 }  // namespace
@@ -58,14 +56,16 @@ Result<PlanningConfig> PlanningConfig::read(const runtime::RosArgs& args) {
 }
 
 Result<LoadedMap> load_map(const PlanningConfig& config, const worlds::WorldSpec& world) {
-  auto tree = config.needs_world() ? world_tree(world) : read_tree(config.map);
-  if (!tree) return tree.error();
-  auto raw = map_server::voxelize(**tree, map_server::voxelize_options(config.map));
+  auto source = config.needs_world()
+                    ? made_map(world)
+                    : map_server::load_map(config.map.map_file, map_server::load_options(config.map));
+  if (!source) return source.error();
+  auto raw = map_server::voxelize(*source, map_server::voxelize_options(config.map));
   if (!raw) return raw.error();
   auto grown = map_server::make_voxel_grid(*raw, map_server::growth(config.map), 1);
   if (!grown) return grown.error();
   return LoadedMap{*std::move(raw), std::make_shared<const VoxelGrid>(*std::move(grown)),
-                   *std::move(tree), map_server::growth(config.map).unknown};
+                   std::move(source->notes)};
 }
 
 Result<Planner> Planner::create(const PlanningConfig& config) {
@@ -80,8 +80,6 @@ Result<Planner> Planner::create(const PlanningConfig& config) {
 
 void Planner::set_map(const LoadedMap& map) {
   grid_ = map.grown;
-  raw_.emplace(map_server::growing_voxels(map.raw.geometry, map.raw.occupied, map.raw.known,
-                                          map.unknown, map.grown->version));
   search_.set_map(grid_);
 }
 
@@ -102,15 +100,12 @@ Status Planner::run(Plan& plan) {
   // The search may have moved the ends, or chosen another goal.
   request.start.position = plan.path->waypoints_map.front();
   request.goal.position = plan.path->waypoints_map.back();
-  const auto raw = raw_->obstacles(grid_->inflation_m);
   auto corridor = run_stage(plan, "corridor_builder", std::string(builder_.implementation()),
-                            [&] { return builder_.build(*grid_, plan.path->waypoints_map, &raw); });
+                            [&] { return builder_.build(*grid_, plan.path->waypoints_map); });
   if (!corridor) return corridor.error();
   plan.corridor = *std::move(corridor);
-  auto solution = run_stage(
-      plan, "trajectory_optimizer", std::string(optimizer_.implementation()), [&] {
-        return optimizer_.optimise(*plan.corridor, request.start, request.goal, request.limits);
-      });
+  auto solution = run_stage(plan, "trajectory_optimizer", std::string(optimizer_.implementation()),
+                            [&] { return optimizer_.optimise(request, *plan.corridor); });
   if (!solution) return solution.error();
   plan.solution = *std::move(solution);
   return success();

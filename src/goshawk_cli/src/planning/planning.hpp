@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "goshawk/core/plan_request.hpp"
-#include "goshawk/corridor_builder/raw_map.hpp"
+#include "goshawk/corridor_builder/corridor_builder.hpp"
 #include "goshawk/map_server/config.hpp"
 #include "goshawk/path_search/path_search.hpp"
 #include "goshawk/runtime/ros_args.hpp"
@@ -36,8 +36,7 @@ struct StageTime {
 struct LoadedMap {
   map_server::RawVoxels raw;
   std::shared_ptr<const VoxelGrid> grown;
-  map_server::OcTreePtr tree;
-  map_server::UnknownPolicy unknown = map_server::UnknownPolicy::occupied;
+  std::vector<std::string> notes = {};  // of the map file: what was assumed, or looks wrong
 };
 /// @param world that is made if the config names no map
 Result<LoadedMap> load_map(const PlanningConfig& config,
@@ -72,7 +71,6 @@ class Planner {
   corridor_builder::CorridorBuilder builder_;
   trajectory_optimizer::TrajectoryOptimizer optimizer_;
   std::shared_ptr<const VoxelGrid> grid_;
-  std::optional<corridor_builder::RawMap> raw_;  // for the corridor's margin `sphere`
 };
 
 }  // namespace goshawk::cli

@@ -18,6 +18,8 @@ struct WorldOptions {
   std::optional<Vec3> origin_m;
   std::vector<Vec3> keep_free;
   std::string convert;
+  map_server::LoadOptions load;           // of the map to convert
+  std::optional<Vec3> lower_m, upper_m;   // of the box that it is cut to
   std::string output;
 };
 
@@ -41,19 +43,28 @@ worlds::WorldSpec spec_of(const WorldOptions& o) {
   return spec;
 }
 
-Result<Made> make(const WorldOptions& o) {
+Result<Made> convert(const WorldOptions& o, const Console& console) {
+  map_server::LoadOptions options = o.load;
+  options.resolution_m = o.spec.resolution_m;
+  if (o.lower_m.has_value() != o.upper_m.has_value()) {
+    return fail(ErrorCode::invalid_parameter, "--lower and --upper make a box: give both");
+  }
+  if (o.lower_m) options.box = map_server::Box{*o.lower_m, *o.upper_m};
+  auto source = map_server::load_map(o.convert, options);
+  if (!source) return source.error();
+  for (const std::string& note : source->notes) console.say(o.convert + ": " + note);
+  auto raw = map_server::voxelize(*source, {.box = options.box});
+  if (!raw) return raw.error();
+  return Made{raw->geometry, std::move(raw->occupied), std::move(raw->known), source->format};
+}
+
+Result<Made> make(const WorldOptions& o, const Console& console) {
   if (o.convert.empty()) {
     auto world = worlds::make_world(spec_of(o));
     if (!world) return world.error();
     return Made{world->geometry, std::move(world->occupied), {}, o.spec.kind};
   }
-  map_server::LoadOptions options;
-  options.resolution_m = o.spec.resolution_m;
-  auto source = map_server::load_map(o.convert, options);
-  if (!source) return source.error();
-  auto raw = map_server::voxelize(*source->tree);
-  if (!raw) return raw.error();
-  return Made{raw->geometry, std::move(raw->occupied), std::move(raw->known), source->format};
+  return convert(o, console);
 }
 
 Json describe(const Made& made, const WorldOptions& o, double grown_ratio) {
@@ -75,7 +86,7 @@ Json describe(const Made& made, const WorldOptions& o, double grown_ratio) {
 }
 
 int run_world(const WorldOptions& o, const Console& console) {
-  const auto made = make(o);
+  const auto made = make(o, console);
   if (!made) return console.failed(made.error());
   const auto grown = inflate(made->occupied, o.spec.inflation_m, made->geometry.resolution_m);
   if (!grown) return console.wrong_call(grown.error());
@@ -117,6 +128,12 @@ void add_world(Program& program) {
              "[m] point that stays free after inflation; may repeat");
   verb->add_option("--convert", o->convert,
                    "convert this map instead: .bt, .ot, .pcd, .ply, .3dmap");
+  add_point(verb, "--lower", o->lower_m, "[m] with --convert: lower corner of the box to cut to");
+  add_point(verb, "--upper", o->upper_m, "[m] with --convert: its upper corner");
+  verb->add_option("--scale", o->load.scale,
+                   "[m] with --convert: a unit of the cloud's coordinates (0.001: millimetres)");
+  add_point(verb, "--cloud-origin", o->load.origin_file,
+            "[m] with --convert: subtracted from every point of the cloud");
   verb->footer(
       "Examples:\n"
       "  goshawk world forest.bt --kind forest --size 20,20,5 --density 0.2 --seed 7\n"

@@ -61,7 +61,7 @@ std::string cube_faults(const Polytope& polytope, const VoxelGrid& grid, std::si
     for (int y = int(std::floor(from.y())); y <= int(std::floor(to.y())); ++y) {
       for (int x = int(std::floor(from.x())); x <= int(std::floor(to.x())); ++x) {
         const Index3 i{x, y, z};
-        if (!grid.occupied.test(i)) continue;
+        if (!grid.grown.test(i)) continue;
         const Vec3 lo = grid.geometry.lower_corner(i);
         const Vec3 hi = grid.geometry.lower_corner({x + 1, y + 1, z + 1});
         if (interiors_meet(polytope, lo, hi)) {

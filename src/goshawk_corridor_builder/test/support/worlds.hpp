@@ -14,12 +14,12 @@ namespace goshawk::corridor_builder::test_support {
 inline VoxelGrid empty_world(Index3 size, double resolution_m, Vec3 origin_map = Vec3::Zero()) {
   VoxelGrid grid;
   grid.geometry = {origin_map, resolution_m, size};
-  grid.occupied = BitGrid(size, true);
+  grid.grown = BitGrid(size, true);
   return grid;
 }
 
 inline double blocked_share(const VoxelGrid& grid) {
-  return double(grid.occupied.count()) / double(grid.occupied.voxels());
+  return double(grid.grown.count()) / double(grid.grown.voxels());
 }
 
 /// Every voxel blocked or not by itself.
@@ -28,7 +28,7 @@ inline void add_noise(VoxelGrid& grid, double ratio, Random& random) {
   for (int z = 0; z < n.z; ++z) {
     for (int y = 0; y < n.y; ++y) {
       for (int x = 0; x < n.x; ++x) {
-        if (random.chance(ratio)) grid.occupied.set({x, y, z}, true);
+        if (random.chance(ratio)) grid.grown.set({x, y, z}, true);
       }
     }
   }
@@ -40,7 +40,7 @@ inline void fill(VoxelGrid& grid, Index3 lo, Index3 hi) {
   const int x1 = std::clamp(hi.x, x0, n.x);
   for (int z = std::max(0, lo.z); z < std::min(n.z, hi.z); ++z) {
     for (int y = std::max(0, lo.y); y < std::min(n.y, hi.y); ++y) {
-      grid.occupied.set_run(x0, x1, y, z, true);
+      grid.grown.set_run(x0, x1, y, z, true);
     }
   }
 }
@@ -58,7 +58,7 @@ inline VoxelGrid boxes_and_pillars(Index3 size, double resolution_m, double rati
     const int h = pillar ? size.z : 2 + random.below(std::max(1, size.z / 2));
     const Index3 lo{random.below(size.x), random.below(size.y), pillar ? 0 : random.below(size.z)};
     fill(raw, lo, {lo.x + w, lo.y + d, lo.z + h});
-    grown.occupied = inflate(raw.occupied, radius_m, resolution_m).value();
+    grown.grown = inflate(raw.grown, radius_m, resolution_m).value();
   }
   return grown;
 }
@@ -79,7 +79,7 @@ inline VoxelGrid forest(Index3 size, double resolution_m, int trees, double radi
       }
     }
   }
-  grid.occupied = inflate(grid.occupied, radius_m, resolution_m).value();
+  grid.grown = inflate(grid.grown, radius_m, resolution_m).value();
   return grid;
 }
 
@@ -88,7 +88,7 @@ inline bool random_free_point(const VoxelGrid& grid, Random& random, Vec3& p_map
   const Index3 n = grid.geometry.size;
   for (int k = 0; k < 200; ++k) {
     const Index3 i{random.below(n.x), random.below(n.y), random.below(n.z)};
-    if (grid.occupied.get(i)) continue;
+    if (grid.grown.get(i)) continue;
     const int kind = random.below(4);
     Vec3 f(0.5, 0.5, 0.5);
     if (kind >= 1) f = Vec3(random.uniform(), random.uniform(), random.uniform());

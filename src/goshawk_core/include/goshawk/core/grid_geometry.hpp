@@ -20,7 +20,7 @@ struct GridGeometry {
   Status check() const;
 
   /// @param p_map [m] finite @return the voxel that contains it (a shared face belongs to the
-  /// upper voxel), or nothing where p_map is outside or not finite
+  /// upper voxel), or nothing if p_map is outside or not finite
   std::optional<Index3> index_of(const Vec3& p_map) const;
 
   Vec3 lower_corner(Index3 i) const { return origin_map + resolution_m * Vec3(i.x, i.y, i.z); }
@@ -31,25 +31,29 @@ struct GridGeometry {
 
   /// @param p_map [m] @return p_map in voxel units: voxel i is [i, i + 1]
   Vec3 to_grid(const Vec3& p_map) const { return (p_map - origin_map) / resolution_m; }
+
+  friend bool operator==(const GridGeometry&, const GridGeometry&) = default;
 };
 
-/// What the planning stages see: obstacles already grown by the vehicle, the unknown policy
-/// already applied. Frame `map`.
+/// What the planning stages see: obstacles inflated by the vehicle, the unknown policy applied.
+/// Frame `map`. A copy shares the bits (BitGrid).
 struct VoxelGrid {
   GridGeometry geometry;
-  BitGrid occupied;  // blocked for the vehicle's centre; outside is blocked
-  BitGrid known;     // measured at all; outside is unknown; may be empty where all is known
+  BitGrid grown;     // blocked for the vehicle's centre; outside is blocked
+  BitGrid known;     // measured at all; outside is unknown; may be empty if all is known
+  BitGrid raw = {};  // obstacles as measured, before inflation; outside is occupied; may be empty
   std::uint64_t version = 0;
-  double inflation_m = 0.0;         // [m] by how much obstacles were grown
-  bool unknown_is_occupied = true;  // the policy that `occupied` was made with
+  double inflation_m = 0.0;         // [m] by how much obstacles were inflated
+  bool unknown_is_occupied = true;  // space that is not known is blocked in `grown`
+  bool unknown_grows = false;       // it was inflated as well, like an obstacle
 
-  /// Geometry and both bit grids agree in size.
+  /// The geometry and the bit grids agree in size.
   Status check() const;
 
   bool is_known(Index3 i) const { return known.empty() ? geometry_contains(i) : known.test(i); }
 
  private:
-  bool geometry_contains(Index3 i) const { return occupied.contains(i); }
+  bool geometry_contains(Index3 i) const { return grown.contains(i); }
 };
 
 /// Which end of a plan a point is, for error codes and sentences.

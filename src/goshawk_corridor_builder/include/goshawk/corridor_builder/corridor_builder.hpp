@@ -11,15 +11,6 @@
 
 namespace goshawk::corridor_builder {
 
-/// The map before obstacles were grown, for the margin `sphere`: polytopes keep `radius_m` away
-/// from every set voxel of `occupied`, measured to the whole cube.
-struct RawObstacles {
-  const BitGrid* occupied = nullptr;  // same size and place as the grown grid
-  double radius_m = 0.0;              // [m] what the grown grid was grown by, or less
-  const BitGrid* forbidden =
-      nullptr;  // voxels that only the vehicle's centre keeps out of; or none
-};
-
 /// Wraps a polyline in convex polytopes that no obstacle cuts into (thesis, section "Safe Flight
 /// Corridor Generation"; obstacles are whole cubes, not points: docs/corridors.md).
 ///
@@ -48,20 +39,19 @@ class CorridorBuilder {
   CorridorBuilder& operator=(CorridorBuilder&&) noexcept;
   ~CorridorBuilder();
 
-  /// @param grid obstacles grown by the vehicle already; outside is blocked
+  /// @param grid obstacles inflated by the vehicle already; outside is blocked. With margin `sphere`
+  ///   it needs its raw voxels: polytopes keep inflation_m away from every one of them (and from
+  ///   unknown space if that was inflated as well), measured to the whole cube
   /// @param waypoints_map [m] n >= 2 points, frame `map`; all equal, or no neighbours equal
-  /// @param raw needed for margin `sphere`, else not looked at
   /// @return invalid_input (not finite, fewer than two points, a segment of no length, a grid
   ///   that disagrees with itself), segment_blocked (a segment meets an occupied cube's interior or
   ///   leaves the map; names the segment and the place), corridor_disjoint (two polytopes share no
   ///   ball)
-  Result<Corridor> build(const VoxelGrid& grid, std::span<const Vec3> waypoints_map,
-                         const RawObstacles* raw = nullptr);
+  Result<Corridor> build(const VoxelGrid& grid, std::span<const Vec3> waypoints_map);
 
   /// The same into memory that is reused: a repeated query allocates nothing.
   /// @param corridor overwritten; left as it was after a failure
-  Status build(const VoxelGrid& grid, std::span<const Vec3> waypoints_map, const RawObstacles* raw,
-               Corridor& corridor);
+  Status build(const VoxelGrid& grid, std::span<const Vec3> waypoints_map, Corridor& corridor);
 
   /// @return the generator's name, for reports: "ellipsoid" or "box"
   std::string_view implementation() const;

@@ -19,6 +19,11 @@ struct Config {
   double margin_m = 0.05;
   double resolution_m = 0.2;
   CloudMeaning cloud_meaning = CloudMeaning::map;
+  CloudFrame cloud_frame = CloudFrame::automatic;
+  double cloud_scale = 1.0;
+  double cloud_origin_x_m = 0.0;
+  double cloud_origin_y_m = 0.0;
+  double cloud_origin_z_m = 0.0;
   double max_range_m = 30.0;
   bool use_box = false;
   double box_x_min_m = 0.0;
@@ -28,6 +33,7 @@ struct Config {
   double box_y_max_m = 10.0;
   double box_z_max_m = 4.0;
   int max_voxels = 1'000'000'000;
+  int max_tree_mb = 4000;
   bool publish_raw = false;
 };
 
@@ -35,7 +41,8 @@ template <typename Self, typename Visitor>
 requires std::same_as<std::remove_const_t<Self>, Config>
 void describe(Self& c, Visitor&& visit) {
   visit("map_file", c.map_file, "",
-        "map to load (.bt, .ot, .pcd, .ply, .3dmap); empty: the box begins as unknown space",
+        "map to load (.bt, .ot, .pcd, .ply with points or faces, .3dmap); empty: the box begins as "
+        "unknown space",
         Anything{});
   visit("unknown", c.unknown, "",
         "space that was not measured: occupied (an obstacle that grows), blocked (an obstacle "
@@ -49,11 +56,23 @@ void describe(Self& c, Visitor&& visit) {
         Range::positive(100.0));
   visit("cloud_meaning", c.cloud_meaning, "",
         "what a cloud file says of the space between its points: map (free), points (nothing) or "
-        "scan (the rays from the origin are free)",
+        "scan (the rays from the sensor are free)",
         Anything{});
+  visit("cloud_frame", c.cloud_frame, "",
+        "what the points of a cloud file with a VIEWPOINT refer to: sensor (its pose is applied), "
+        "map (it only says where the sensor was), or automatic (sensor if it is turned; map for a "
+        "scan; else the file is refused)",
+        Anything{});
+  visit("cloud_scale", c.cloud_scale, "m",
+        "a unit of a cloud file's coordinates: 0.001 for millimetres", Range::positive(1e6));
+  visit("cloud_origin_x_m", c.cloud_origin_x_m, "m",
+        "where the map frame's origin lies in a cloud file (scaled): subtracted from every point",
+        Anything{});
+  visit("cloud_origin_y_m", c.cloud_origin_y_m, "m", "the same for y", Anything{});
+  visit("cloud_origin_z_m", c.cloud_origin_z_m, "m", "the same for z", Anything{});
   visit("max_range_m", c.max_range_m, "m", "longest ray of a scan that may hit something",
         AtRunTime{Range::positive(1000.0)});
-  visit("use_box", c.use_box, "", "cut the map to the box; needed where map_file is empty",
+  visit("use_box", c.use_box, "", "cut the map to the box; needed if map_file is empty",
         Anything{});
   visit("box_x_min_m", c.box_x_min_m, "m", "lower corner of the box", Anything{});
   visit("box_y_min_m", c.box_y_min_m, "m", "lower corner of the box", Anything{});
@@ -62,10 +81,13 @@ void describe(Self& c, Visitor&& visit) {
   visit("box_y_max_m", c.box_y_max_m, "m", "upper corner of the box", Anything{});
   visit("box_z_max_m", c.box_z_max_m, "m", "upper corner of the box", Anything{});
   visit("max_voxels", c.max_voxels, "", "larger maps are refused", Range{1.0, 2147483647.0});
+  visit("max_tree_mb", c.max_tree_mb, "MB",
+        "scans are refused if the OctoMap of the map that was read would take more memory",
+        Range{1.0, 2147483647.0});
   visit(
       "publish_raw", c.publish_raw, "",
-      "also publish map/voxels/raw, the map before obstacles grow: a corridor_builder with margin "
-      "sphere needs it",
+      "map/voxels also brings the obstacles as measured: a corridor_builder with margin sphere "
+      "needs them",
       Anything{});
 }
 

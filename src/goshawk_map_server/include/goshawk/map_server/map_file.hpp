@@ -5,11 +5,13 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "goshawk/core/result.hpp"
 #include "goshawk/core/vector.hpp"
 #include "goshawk/core/words.hpp"
 #include "goshawk/map_server/octree.hpp"
+#include "goshawk/map_server/voxel_map.hpp"
 
 namespace goshawk::map_server {
 
@@ -26,30 +28,54 @@ constexpr auto words_of(CloudMeaning) {
   return std::to_array<Named<CloudMeaning>>({{map, "map"}, {points, "points"}, {scan, "scan"}});
 }
 
+/// What the points of a file with a viewpoint (PCD's VIEWPOINT: the sensor's pose) refer to.
+enum class CloudFrame {
+  automatic,  // a turned viewpoint: sensor; one that is only moved: map for a scan, else refused
+  sensor,     // the sensor: the pose is applied to the points
+  map,        // the map already: the viewpoint only says where the sensor was
+};
+
+constexpr auto words_of(CloudFrame) {
+  using enum CloudFrame;
+  return std::to_array<Named<CloudFrame>>(
+      {{automatic, "automatic"}, {sensor, "sensor"}, {map, "map"}});
+}
+
 /// How to read files that do not say it themselves. OctoMap files bring their resolution and their
 /// knowledge of free space along and use only max_voxels.
 struct LoadOptions {
-  double resolution_m = 0.2;  // voxel edge of clouds and .3dmap files
+  double resolution_m = 0.2;  // voxel edge of clouds, meshes and .3dmap files
   CloudMeaning cloud = CloudMeaning::map;
-  Vec3 sensor_origin_map = Vec3::Zero();  // [m] for CloudMeaning::scan
-  double max_range_m = 30.0;              // [m] for CloudMeaning::scan
-  std::optional<Box> box;                 // clouds: points outside are skipped
+  CloudFrame frame = CloudFrame::automatic;
+  double scale = 1.0;  // [m] a unit of the file's coordinates
+  /// [m] where the map frame's origin lies in the file's coordinates (scaled): subtracted
+  Vec3 origin_file = Vec3::Zero();
+  std::optional<Vec3> sensor_origin_map;  // [m] for a scan; else the file's viewpoint, or zero
+  double max_range_m = 30.0;              // [m] for a scan
+  std::optional<Box> box;                 // points outside are skipped, rays and faces cut
   std::int64_t max_voxels = 1'000'000'000;
 };
 
-/// A map as it was read: the tree, and what the reading left out.
+/// A map as it was read: a tree or voxels, and what there is to say about it.
 struct MapSource {
-  OcTreePtr tree;                      // never null in a success
-  std::string format;                  // "bt", "ot", "pcd", "ply" or "3dmap"
-  std::int64_t points_read = 0;        // clouds and .3dmap: entries in the file
+  OcTreePtr tree;                   // of OctoMap files and scans, else null
+  std::optional<RawVoxels> voxels;  // of all others
+  std::string format;               // "bt", "ot", "pcd", "ply" or "3dmap"
+  std::int64_t points_read = 0;     // clouds and .3dmap: entries in the file
+  std::int64_t triangles_read = 0;  // of a mesh
   std::int64_t points_not_finite = 0;  // skipped
   std::int64_t points_outside = 0;     // skipped: outside LoadOptions::box
+  std::vector<std::string> notes;      // what was assumed, or looks wrong; sentences
 };
+
+/// The voxels of a map that was read, as voxelize() gives them for a tree.
+Result<RawVoxels> voxelize(const MapSource& source, const VoxelizeOptions& options = {});
 
 /// Reads a map by the ending of its name:
 ///   .bt, .ot   OctoMap, of OcTree (.ot: also ColorOcTree, colours dropped)
-///   .pcd       ascii, binary, binary_compressed; float fields x, y, z among any others
-///   .ply       ascii, binary little and big endian; float x, y, z of the element vertex
+///   .pcd       ascii, binary, binary_compressed; fields x, y, z (float or integer) among any others
+///   .ply       ascii, binary little and big endian; x, y, z of the element vertex; faces, strips and
+///              edges set every voxel that they pass through
 ///   .3dmap     Warframe voxel maps: "voxel X Y Z", then one occupied voxel a line; voxel
 ///              (0, 0, 0) has its lower corner at the origin, what is not listed is free
 ///

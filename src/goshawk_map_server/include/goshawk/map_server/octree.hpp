@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -22,6 +23,11 @@ using OcTreePtr = std::shared_ptr<octomap::OcTree>;
 struct Box {
   Vec3 lower_map = Vec3::Zero();
   Vec3 upper_map = Vec3::Zero();
+
+  /// Lower faces included, upper ones not.
+  bool holds(const Vec3& p_map) const {
+    return (p_map.array() >= lower_map.array()).all() && (p_map.array() < upper_map.array()).all();
+  }
 };
 
 /// The smallest grid on the tree's raster (voxel faces at multiples of the resolution) that
@@ -32,10 +38,13 @@ Result<GridGeometry> raster_of(const Box& box, double resolution_m, std::int64_t
 /// Builds the tree whose leaves say exactly what the bits say; uniform regions become one leaf.
 /// @param occupied, known of geometry.size; where known is not set, occupied is ignored; an
 /// empty `known` means that all voxels are known
-/// @return invalid_parameter where the origin is no multiple of the resolution, map_empty where
-/// nothing is known, map_too_large outside OctoMap's reach
+/// @param max_bytes of memory for the tree: 30 to 70 bytes a voxel where neighbours differ, and in
+/// flat maps, whose voxels fill no cube
+/// @return invalid_parameter if the origin is not a multiple of the resolution, map_empty if
+/// nothing is known, map_too_large outside OctoMap's reach or beyond max_bytes
 Result<OcTreePtr> make_octree(const GridGeometry& geometry, const BitGrid& occupied,
-                              const BitGrid& known);
+                              const BitGrid& known,
+                              std::int64_t max_bytes = std::numeric_limits<std::int64_t>::max());
 
 /// Writes .bt (occupancy only) or .ot (log-odds as well), by the ending; a file that was there
 /// before is replaced only when all went well. @return io_failed, or map_unreadable for another
@@ -48,6 +57,9 @@ Status save_voxels(const GridGeometry& geometry, const BitGrid& occupied, const 
 
 /// @return the tree's occupancy without a header, as octomap_msgs/Octomap carries it (binary)
 std::string binary_payload(const octomap::OcTree& tree);
+/// The same of bits, without a tree; empty if nothing is known. @return as make_octree()
+Result<std::string> binary_payload(const GridGeometry& geometry, const BitGrid& occupied,
+                                   const BitGrid& known);
 
 /// The tree of such a payload. @param resolution_m [m] from 1e-6 to 1e3
 /// @return map_malformed if it is not one whole tree, map_empty if it holds no node

@@ -17,13 +17,6 @@ struct RawVoxels {
   BitGrid known;          // outside is unknown
 };
 
-/// The same, held elsewhere.
-struct RawView {
-  const GridGeometry& geometry;
-  const BitGrid& occupied;
-  const BitGrid& known;
-};
-
 struct VoxelizeOptions {
   std::optional<Box> box;  // [m]; without: the box around all that is known
   std::int64_t max_voxels = 1'000'000'000;
@@ -52,13 +45,8 @@ struct Growth {
   double inflation_m = 0.2;  // [m] the vehicle's radius plus its margin
 };
 
-/// What grows under the policy, before it does: a grid with an inflation of 0 and the flags of
-/// the grown one.
-VoxelGrid growing_voxels(const GridGeometry& geometry, const BitGrid& occupied,
-                         const BitGrid& known, UnknownPolicy unknown, std::uint64_t version);
-
-/// Applies the policy and grows the obstacles (goshawk::inflate).
-/// @return invalid_input for a bad inflation; map_empty where no voxel stays free
+/// Applies the policy and inflates the obstacles (goshawk::inflate).
+/// @return with raw voxels; invalid_input for a bad inflation, map_empty if no voxel stays free
 Result<VoxelGrid> make_voxel_grid(const RawVoxels& raw, const Growth& growth,
                                   std::uint64_t version);
 

@@ -43,9 +43,6 @@ class LabelTable {
 
   const Label* at(std::uint32_t node) const { return labels_.get() + node; }
 
-  /// Asks for a label that is read soon.
-  void prefetch(std::uint32_t node) const { __builtin_prefetch(labels_.get() + node, 1); }
-
   /// The label of cost 0, without direction.
   Label root() const { return root_; }
   bool is_current(Label label) const { return label >> 49 == query_; }

@@ -25,8 +25,9 @@ class ObstacleBits {
   /// @return nodes that a map of this size needs, or 0 where it is more than kMaxNodes
   static std::int64_t nodes_for(Index3 size);
 
-  /// Takes over `blocked`; one pass over its words, and work for each voxel that differs from the
-  /// map before. @pre nodes_for(blocked.size()) > 0
+  /// Takes over `blocked`, and keeps a copy of it, which shares its chunks. Of a map of the same
+  /// size as before only chunks that differ are looked at; work for each voxel that differs.
+  /// @pre nodes_for(blocked.size()) > 0
   void assign(const BitGrid& blocked);
 
   Index3 size() const { return size_; }
@@ -93,10 +94,11 @@ class ObstacleBits {
 
   void resize(Index3 size);
   void clear(Copy& copy, int u_size, int v_size, int w_size);
-  void assign_row(const std::uint64_t* row, int y, int z);
+  void assign_row(const BitGrid& blocked, int y, int z);
   void apply_changes(std::uint64_t changes, int x0, int y, int z);
 
   Index3 size_;
+  BitGrid held_;              // what the copies say
   std::array<Copy, 3> axes_;  // x, y, z fastest; then the other two in the order x, y, z
   std::array<std::int64_t, kDirections> offsets_{};
   std::uint64_t rows_per_layer_ = 0;

@@ -56,11 +56,11 @@ class PathSearch {
   /// @return invalid_parameter, or why the map that is there cannot be searched like that
   Status reconfigure(const Config& config);
 
-  /// The map is kept, and must not change afterwards. A null or malformed map is reported by
-  /// plan().
+  /// The map is kept, and must not change afterwards. Of a further version of the same map only
+  /// chunks that differ are looked at. A null or malformed map is reported by plan().
   void set_map(std::shared_ptr<const VoxelGrid> map);
 
-  /// @return the errors of place_end(), make_search_map() and GridPlanner::search(). Of several
+  /// @return the errors of place_end(), SearchMap and GridPlanner::search(). Of several
   /// goals those that are not free are left out; if none is left the error is the first one's
   Result<PlannedPath> plan(const PlanQuery& query);
   Result<PlannedPath> plan(const PlanRequest& request, const StopSignal& stop = {});
@@ -75,7 +75,10 @@ class PathSearch {
  private:
   PathSearch(const Config& config, std::unique_ptr<GridPlanner> planner,
              const std::optional<SearchBox>& box)
-      : config_(config), planner_(std::move(planner)), box_(box) {}
+      : config_(config),
+        planner_(std::move(planner)),
+        has_box_(box.has_value()),
+        search_map_(config.unknown, box) {}
   Status place(const PlanQuery& query);
   Status search(const PlanQuery& query, PlannedPath& path);
   void fill(PlannedPath& path);
@@ -84,11 +87,12 @@ class PathSearch {
 
   Config config_;
   std::unique_ptr<GridPlanner> planner_;
-  std::optional<SearchBox> box_;
+  bool has_box_;
+  SearchMap search_map_;
   PathPruner pruner_;
   double planner_resolution_m_ = 0.0;
   std::shared_ptr<const VoxelGrid> given_map_;
-  std::shared_ptr<const VoxelGrid> map_;  // as make_search_map() has it
+  std::shared_ptr<const VoxelGrid> map_;  // as search_map_ has it
   // For requests that take unknown space in another way than the configuration; made when needed.
   std::map<UnknownRule, std::unique_ptr<PathSearch>> others_;
   Error map_error_{ErrorCode::no_map, "no map yet: wait for one, or load one, before planning"};

@@ -47,13 +47,13 @@ class GridPlanner {
   /// The word of Config::planner, or, if weights take another search, that one's name.
   virtual std::string_view name() const = 0;
 
-  /// Takes over the obstacles; `blocked` is not kept. The same size as before costs one pass over
-  /// the words and work for each voxel that differs; a new size allocates. A map that cannot be
-  /// searched (empty, or more than 2^32 voxels) is reported by search().
+  /// Takes over the obstacles; a copy of the grid is kept, which shares its chunks. Of a map of the
+  /// same size as before only the chunks that differ are looked at; a new size allocates. A map that
+  /// cannot be searched (empty, or more than 2^32 voxels) is reported by search().
   void set_map(const BitGrid& blocked) { set_map(blocked, nullptr); }
-  /// @param costly of the same size: voxels that Weights::unknown is for; null for none. Planners
-  /// without weights ignore it
-  virtual void set_map(const BitGrid& blocked, const BitGrid* costly) = 0;
+  /// @param known of the same size: Weights::unknown is for the voxels that are not set in it; null
+  /// if all are known. Planners without weights ignore it
+  virtual void set_map(const BitGrid& blocked, const BitGrid* known) = 0;
 
   /// @param path overwritten; its capacity is reused, so that a repeated query allocates nothing.
   /// After a failure its counters stand

@@ -31,8 +31,10 @@ class CostField {
 
   explicit CostField(const Weights& weights);
 
-  /// Two passes over all voxels. @param costly may be null: nothing is
-  void assign(const BitGrid& blocked, const BitGrid* costly);
+  /// Keeps copies of the grids, which share their chunks. Of a map of the same size as before only
+  /// the surroundings of chunks that differ are measured again.
+  /// @param known of the same size: voxels that are not set in it are costly; null: none is
+  void assign(const BitGrid& blocked, const BitGrid* known);
 
   /// @pre inside the grid
   double factor(Index3 i) const { return table_[classes_[flat(i)]]; }
@@ -42,11 +44,20 @@ class CostField {
     return (std::size_t(i.z) * std::size_t(size_.y) + std::size_t(i.y)) * std::size_t(size_.x) +
            std::size_t(i.x);
   }
-  void measure_distances(const BitGrid& blocked);
-  void lower(Index3 at, int sign);
+  /// lo <= i < hi
+  struct Box {
+    Index3 lo, hi;
+  };
+
+  Box widened(const Box& box) const;
+  Box changed_within(const BitGrid& blocked, BitGrid::Rows rows) const;
+  void measure(const BitGrid& blocked, const Box& box);
+  void write(const BitGrid& level, Index3 corner, const Box& box, int steps);
+  void mark_costly(const BitGrid& known, BitGrid::Rows rows);
 
   Weights weights_;
   Index3 size_;
+  BitGrid blocked_, known_;            // what the classes say; known_ is empty if all is known
   std::array<double, 256> table_{};    // by class
   std::vector<std::uint8_t> classes_;  // steps to the nearest blocked voxel, | 128 where costly
 };

@@ -8,9 +8,11 @@
 
 namespace goshawk::stage {
 
-/// Keeps a stage's copy of the map up to date from `map/voxels` and `map/voxels/updates`. A message
-/// that is wrong is reported on stage_report, and the grid before it stays. An update that does
-/// not follow on the version here is dropped: the whole map comes again soon after.
+/// Keeps a stage's map up to date from `map/voxels` and `map/voxels/updates`. Each version shares
+/// what did not change with the one before it, so that a stage follows by looking at changed chunks
+/// only (goshawk::for_changed_chunks). A message that is wrong is reported on stage_report, and the
+/// grid before it stays. An update that does not follow on the version here is dropped: the whole
+/// map comes again soon after.
 class MapSubscription {
  public:
   using Callback = std::function<void(const std::shared_ptr<const VoxelGrid>&)>;

@@ -1,18 +1,25 @@
-#include "goshawk/trajectory_optimizer/rivals.hpp"
+#include "goshawk/baselines/polynomial_baselines.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "goshawk/trajectory_optimizer/polynomial_spline.hpp"
+#include "goshawk/baselines/polynomial_spline.hpp"
+#include "goshawk/trajectory_optimizer/limit_usage.hpp"
 #include "goshawk/trajectory_optimizer/time_profile.hpp"
-#include "usage.hpp"
 
-namespace goshawk::trajectory_optimizer {
+namespace goshawk::baselines {
 namespace {
+
+using trajectory_optimizer::rest_to_rest_duration_s;
+using trajectory_optimizer::time_factor;
+using trajectory_optimizer::usage_of;
 
 constexpr double kLongestPiece_s = 0.1;  // of the pieces that stand for a polynomial
 constexpr double kLeastLength_m = 1e-3;
 constexpr int kMostPlans = 40;
+constexpr int kMostStretches = 20;
 
 /// Waypoints, and which segment of the caller's each segment came from.
 struct Route {
@@ -52,7 +59,7 @@ Result<Trajectory> plan(const Route& route, const FlatState& start, const FlatSt
     for (const BezierPiece& piece : trajectory.pieces) {
       most = std::max(most, time_factor(usage_of(piece, limits)));
     }
-    if (most <= 1.0 || pass >= 20) return trajectory;
+    if (most <= 1.0 || pass >= kMostStretches) return trajectory;
     for (double& duration : durations) duration *= most * (1.0 + 1e-9);
   }
 }
@@ -76,44 +83,58 @@ Result<Trajectory> minimum_snap(std::span<const Vec3> waypoints, const FlatState
   return plan(route_of(waypoints), start, goal, limits, Smoothness::snap);
 }
 
+namespace {
+
+// Pieces name the segments of the route; they get those of the caller.
+// @return for each segment of the route, whether one of its pieces is not free
+std::vector<bool> blocked_segments(const Route& route,
+                                   const std::function<bool(const BezierPiece&)>& is_free,
+                                   Trajectory& trajectory) {
+  std::vector<bool> blocked(route.origin.size(), false);
+  for (BezierPiece& piece : trajectory.pieces) {
+    const auto segment = std::size_t(piece.polytope);
+    piece.polytope = route.origin[segment];
+    if (!is_free(piece)) blocked[segment] = true;
+  }
+  return blocked;
+}
+
+// A waypoint more in the middle of each blocked segment.
+Route denser(const Route& route, const std::vector<bool>& blocked) {
+  Route dense;
+  for (std::size_t k = 0; k < route.origin.size(); ++k) {
+    dense.waypoints.push_back(route.waypoints[k]);
+    dense.origin.push_back(route.origin[k]);
+    if (!blocked[k]) continue;
+    dense.waypoints.push_back(0.5 * (route.waypoints[k] + route.waypoints[k + 1]));
+    dense.origin.push_back(route.origin[k]);
+  }
+  dense.waypoints.push_back(route.waypoints.back());
+  return dense;
+}
+
+}  // namespace
+
 Result<RecheckedPolynomial> rechecked_polynomial(
     std::span<const Vec3> waypoints, const FlatState& start, const FlatState& goal,
     const Limits& limits, const std::function<bool(const BezierPiece&)>& is_free) {
   if (auto status = check(waypoints, limits); !status) return status.error();
   Route route = route_of(waypoints);
-  RecheckedPolynomial answer;
-  while (answer.plans < kMostPlans) {
+  int plans = 0;
+  while (plans < kMostPlans && route.waypoints.size() <= PolynomialSpline::kMostWaypoints) {
     auto trajectory = plan(route, start, goal, limits, Smoothness::jerk);
     if (!trajectory) return trajectory.error();
-    ++answer.plans;
-    std::vector<char> blocked(route.origin.size(), 0);
-    bool free = true;
-    for (BezierPiece& piece : trajectory->pieces) {
-      const auto segment = std::size_t(piece.polytope);
-      piece.polytope = route.origin[segment];
-      if (is_free(piece)) continue;
-      blocked[segment] = 1;
-      free = false;
+    ++plans;
+    const auto blocked = blocked_segments(route, is_free, *trajectory);
+    if (std::ranges::none_of(blocked, std::identity{})) {
+      return RecheckedPolynomial{*std::move(trajectory), plans};
     }
-    if (free) {
-      answer.trajectory = *std::move(trajectory);
-      return answer;
-    }
-    Route denser;
-    for (std::size_t k = 0; k < route.origin.size(); ++k) {
-      denser.waypoints.push_back(route.waypoints[k]);
-      denser.origin.push_back(route.origin[k]);
-      if (blocked[k] == 0) continue;
-      denser.waypoints.push_back(0.5 * (route.waypoints[k] + route.waypoints[k + 1]));
-      denser.origin.push_back(route.origin[k]);
-    }
-    denser.waypoints.push_back(route.waypoints.back());
-    if (denser.origin.size() > 400) break;
-    route = std::move(denser);
+    route = denser(route, blocked);
   }
   return fail(ErrorCode::trajectory_infeasible,
-              "the polynomial through the waypoints still collides after " +
-                  std::to_string(answer.plans) + " plans: use a method with a corridor");
+              fmt::format("the polynomial through the waypoints still collides after {} plans: use "
+                          "trajectory_optimizer, which knows the corridor",
+                          plans));
 }
 
-}  // namespace goshawk::trajectory_optimizer
+}  // namespace goshawk::baselines

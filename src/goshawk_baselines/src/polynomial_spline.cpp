@@ -1,10 +1,12 @@
-#include "goshawk/trajectory_optimizer/polynomial_spline.hpp"
+#include "goshawk/baselines/polynomial_spline.hpp"
+
+#include <fmt/format.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
-namespace goshawk::trajectory_optimizer {
+namespace goshawk::baselines {
 namespace {
 
 using Eigen::MatrixXd;
@@ -78,29 +80,33 @@ bool fill_free_derivatives(std::span<const double> durations, int r, MatrixXd& x
   return x.allFinite();
 }
 
+Status check(std::size_t waypoints, std::span<const double> durations) {
+  if (waypoints < 2 || durations.size() + 1 != waypoints) {
+    return fail(ErrorCode::invalid_input,
+                fmt::format("{} waypoints and {} durations: n + 1 and n are needed", waypoints,
+                            durations.size()));
+  }
+  if (waypoints > PolynomialSpline::kMostWaypoints) {
+    return fail(ErrorCode::invalid_input,
+                fmt::format("{} waypoints are too many for one polynomial system, which takes {} "
+                            "at most: use trajectory_optimizer",
+                            waypoints, PolynomialSpline::kMostWaypoints));
+  }
+  for (const double T : durations) {
+    if (std::isfinite(T) && T > 0.0) continue;
+    return fail(ErrorCode::invalid_input,
+                fmt::format("a duration of {} s: it must be finite and above zero", T));
+  }
+  return success();
+}
+
 }  // namespace
 
 Result<PolynomialSpline> PolynomialSpline::through(std::span<const Vec3> waypoints,
                                                    std::span<const double> durations,
                                                    const FlatState& start, const FlatState& goal,
                                                    Smoothness smoothness) {
-  if (waypoints.size() < 2 || durations.size() + 1 != waypoints.size()) {
-    return fail(ErrorCode::invalid_input, std::to_string(waypoints.size()) + " waypoints and " +
-                                              std::to_string(durations.size()) +
-                                              " durations: n + 1 and n are needed");
-  }
-  // One dense system, as its authors solve it: its time grows with the cube.
-  constexpr std::size_t kMostWaypoints = 200;
-  if (waypoints.size() > kMostWaypoints) {
-    return fail(ErrorCode::invalid_input, std::to_string(waypoints.size()) +
-                                              " waypoints are more than one polynomial system is "
-                                              "solved for (200): use method scale");
-  }
-  for (const double T : durations) {
-    if (!(std::isfinite(T) && T > 0.0)) {
-      return fail(ErrorCode::invalid_input, "a duration of " + std::to_string(T) + " s");
-    }
-  }
+  if (auto status = check(waypoints.size(), durations); !status) return status.error();
   const int r = int(smoothness);
   MatrixXd x = known_derivatives(waypoints, start, goal, r);
   if (!fill_free_derivatives(durations, r, x)) {
@@ -150,4 +156,4 @@ Trajectory PolynomialSpline::to_trajectory(double longest_piece_s) const {
   return trajectory;
 }
 
-}  // namespace goshawk::trajectory_optimizer
+}  // namespace goshawk::baselines

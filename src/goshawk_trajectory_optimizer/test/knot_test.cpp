@@ -1,4 +1,4 @@
-#include "goshawk/trajectory_optimizer/joint_spline.hpp"
+#include "goshawk/trajectory_optimizer/knot.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,23 +8,23 @@
 namespace goshawk::trajectory_optimizer {
 namespace {
 
-Joint random_joint(Random& random) {
-  return Joint::NullaryExpr([&] { return random.uniform(-3.0, 3.0); });
+Knot random_knot(Random& random) {
+  return Knot::NullaryExpr([&] { return random.uniform(-3.0, 3.0); });
 }
 
-FlatState state_of(const Joint& joint) {
+FlatState state_of(const Knot& knot) {
   FlatState s;
-  s.position = joint.col(0);
-  s.velocity = joint.col(1);
-  s.acceleration = joint.col(2);
+  s.position = knot.col(0);
+  s.velocity = knot.col(1);
+  s.acceleration = knot.col(2);
   return s;
 }
 
-TEST(JointSpline, PointMapsGiveTheControlPointsOfTheQuintic) {
+TEST(Knot, PointMapsGiveTheControlPointsOfTheQuintic) {
   Random random(1);
   for (int n = 0; n < 100; ++n) {
-    const Joint a = random_joint(random);
-    const Joint b = random_joint(random);
+    const Knot a = random_knot(random);
+    const Knot b = random_knot(random);
     const double T = random.uniform(0.1, 4.0);
     const auto piece = BezierPiece::between(state_of(a), state_of(b), T);
     const auto expect = [](const Vec3& value, const Vec3& truth) {
@@ -39,11 +39,11 @@ TEST(JointSpline, PointMapsGiveTheControlPointsOfTheQuintic) {
   }
 }
 
-TEST(JointSpline, JerkHessianGivesTheQuadratureOfTheSquaredJerk) {
+TEST(Knot, JerkHessianGivesTheQuadratureOfTheSquaredJerk) {
   Random random(2);
   for (int n = 0; n < 100; ++n) {
-    const Joint a = random_joint(random);
-    const Joint b = random_joint(random);
+    const Knot a = random_knot(random);
+    const Knot b = random_knot(random);
     const double T = random.uniform(0.1, 4.0);
     const auto piece = BezierPiece::between(state_of(a), state_of(b), T);
     double integral = 0.0;  // Simpson: exact for cubics, error T^5 / N^4 for this quartic

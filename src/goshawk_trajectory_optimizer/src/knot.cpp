@@ -1,9 +1,9 @@
-#include "goshawk/trajectory_optimizer/joint_spline.hpp"
+#include "goshawk/trajectory_optimizer/knot.hpp"
 
 namespace goshawk::trajectory_optimizer {
 namespace {
 
-// A map and its mirror image in time, which swaps the joints and the sign of odd derivatives.
+// A map and its mirror image in time, which swaps the knots and the sign of odd derivatives.
 PointMap first_only(double p, double v, double a) {
   return {Vec3(p, v, a), Vec3::Zero()};
 }
@@ -60,7 +60,7 @@ PointMap jerk_point(int j, double T) {
   return slope(acceleration_point(j, T), acceleration_point(j + 1, T), 3.0 / T);
 }
 
-Eigen::Matrix<double, 6, 6> jerk_hessian(double T) {
+Eigen::Matrix<double, 6, 6, Eigen::DontAlign> jerk_hessian(double T) {
   Eigen::Matrix<double, 3, 6> points;
   for (int j = 0; j < 3; ++j) {
     const PointMap map = jerk_point(j, T);
@@ -68,7 +68,8 @@ Eigen::Matrix<double, 6, 6> jerk_hessian(double T) {
   }
   Eigen::Matrix3d G;  // G_ij = C(2,i) C(2,j) / (5 C(4,i+j)), times 30
   G << 6.0, 3.0, 1.0, 3.0, 4.0, 3.0, 1.0, 3.0, 6.0;
-  return T / 30.0 * points.transpose() * G * points;
+  const Eigen::Matrix<double, 6, 6> Q = T / 30.0 * points.transpose() * G * points;
+  return Q;
 }
 
 }  // namespace goshawk::trajectory_optimizer
