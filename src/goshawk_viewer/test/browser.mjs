@@ -16,9 +16,9 @@ export async function launch() {
 }
 
 // Without a graphics card every frame costs the processor a tenth of a second and more, which the
-// stages that a page looks at need as well: five frames a second are enough for a test.
+// stages that a page looks at need as well: two frames a second are enough for a test.
 function fewFrames() {
-  window.requestAnimationFrame = callback => setTimeout(() => callback(performance.now()), 200);
+  window.requestAnimationFrame = callback => setTimeout(() => callback(performance.now()), 500);
   window.cancelAnimationFrame = clearTimeout;
 }
 

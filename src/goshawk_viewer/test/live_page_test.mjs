@@ -5,7 +5,7 @@ import {check, end, launch, open, until} from './browser.mjs';
 const [url, bridge, x, y, z, screenshot] = process.argv.slice(2);
 const goal = [x, y, z].map(Number);
 const browser = await launch();
-const {page, complaints} = await open(browser, url, {size: {width: 1440, height: 900}});
+const {page, complaints} = await open(browser, url, {size: {width: 1000, height: 700}});
 
 check(await until(page, () => window.goshawk && goshawk.view.maps.obstacles &&
                               goshawk.view.maps.grown && goshawk.pose), 'map and vehicle come');

@@ -8,7 +8,7 @@ const browser = await launch();
 const address = kind === 'recording' ? url + '?time=2100-01-01T00:00:00Z' : url;
 const strange = [], refused = [], parts = [];
 const {page, complaints} = await open(browser, address, {
-  size: {width: 1200, height: 760},
+  size: {width: 1000, height: 700},
   onRequest: request => {
     const {protocol, hostname} = new URL(request.url());
     if (/^(http|ws)/.test(protocol) && hostname !== '127.0.0.1') strange.push(request.url());
