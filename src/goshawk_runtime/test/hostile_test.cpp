@@ -142,13 +142,13 @@ TEST(Decode, ClaimsNoMemoryForElementsThatAreNotThere) {
   }
 }
 
-// As many as are there, but far larger in memory than on the wire: 20 bytes make 64.
+// As many as are there, but far larger in memory than on the wire: 24 bytes make 88.
 TEST(Decode, ClaimsNoMoreMemoryThanMessagesNeed) {
   goshawk_msgs::msg::VoxelGridUpdate out;
   Bytes bytes = encode(out);
   const std::size_t count_at = bytes.size() - 4;  // of the bricks
   EXPECT_TRUE(decode(bytes, out));
-  constexpr std::uint32_t kBricks = 1'000'000, kBrick = 20;
+  constexpr std::uint32_t kBricks = 1'000'000, kBrick = 24;
   bytes.resize(count_at + 4 + kBricks * kBrick);
   put(bytes, count_at, kBricks);
   EXPECT_LT(taken_by(bytes, out, false), 32U << 20);
