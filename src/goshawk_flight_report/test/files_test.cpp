@@ -82,7 +82,7 @@ TEST_F(Files, TrajectoryRowsLieOnTheTrajectoriesOfTheirLegs) {
     EXPECT_LT((vec(row, 2) - state.position).norm(), 1e-9);
     EXPECT_LT((vec(row, 5) - state.velocity).norm(), 1e-9);
     EXPECT_LT((vec(row, 8) - state.acceleration).norm(), 1e-6);
-    EXPECT_EQ(row[14], leg.yaw_at(row[1] - leg.start_t_s));
+    EXPECT_NEAR(row[14], leg.yaw_at(row[1] - leg.start_t_s), 1e-9);
     last_s[leg_number] = row[1];
   }
   for (std::size_t i = 0; i < 2; ++i) {

@@ -124,7 +124,8 @@ void CostField::mark_costly(const BitGrid& known, BitGrid::Rows rows) {
       for (int w = 0; w < int(known.words_per_row()); ++w) {
         BitGrid::Word changed = known_.row(y, z)[w] ^ known.row(y, z)[w];
         for (; changed != 0; changed &= changed - 1) {
-          row[64 * w + std::countr_zero(changed)] ^= kCostly;
+          const int x = 64 * w + std::countr_zero(changed);
+          if (x < size_.x) row[x] ^= kCostly;  // padding bits follow the grid's outside
         }
       }
     }
