@@ -1,6 +1,7 @@
 // Who is lost by his pilot lands where the map says so: tracker and autopilot as installed, over
 // DDS, in lock step with this test, which falls silent and then serves the map.
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -151,7 +152,8 @@ TEST(Landing, AnAutopilotWithoutCommandsLandsWhereTheMapAllowsIt) {
                          "speed:=0", "-p", "failsafe_hold_s:=0.5"});
   expect_to_land_only_where_the_map_allows(pilot);
   EXPECT_TRUE(pilot.heard("tracking_lost")) << pilot.said();
-  EXPECT_EQ(pilot.control(), "autopilot, goshawk, autopilot in failsafe");
+  // The autopilot's first moments, before the first setpoint, may have passed unheard.
+  EXPECT_THAT(pilot.control(), testing::EndsWith("goshawk, autopilot in failsafe"));
 }
 
 }  // namespace
