@@ -37,6 +37,10 @@ double seconds_of(const std::function<void()>& run, Clock clock) {
 
 }  // namespace
 
+double time_us(const std::function<void()>& run, Clock clock) {
+  return 1e6 * seconds_of(run, clock);
+}
+
 double Timing::quantile_us(double q) const {
   return nearest_rank(sorted_us, q);
 }

@@ -36,6 +36,9 @@ enum class Clock {
 std::vector<Timing> compare(const std::string& name, const std::vector<Contender>& contenders,
                             int rounds, Clock clock = Clock::wall);
 
+/// @return [us] what one run takes, for work that cannot be repeated
+double time_us(const std::function<void()>& run, Clock clock);
+
 /// @return the nearest rank at a share in [0, 1] of sorted numbers; 0 where there are none
 double at_share(const std::vector<double>& sorted, double share);
 

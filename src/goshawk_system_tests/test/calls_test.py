@@ -9,8 +9,8 @@ from calls_case import DONE, NOT_DONE, WRONG_CALL, CallsCase, ascii_pcd
 
 ALL_VERBS = ["plan", "fly", "check", "world", "campaign", "launch", "view", "run", "bench plan",
              "bench search", "bench scenario", "bench stage", "bench dds", "bench corridor",
-             "bench trajectory", "bench tracking", "conform", "record", "replay", "topic list",
-             "topic info", "topic echo", "topic hz", "topic delay", "topic bw", "topic pub",
+             "bench trajectory", "bench updates", "bench tracking", "conform", "record", "replay",
+             "topic list", "topic info", "topic echo", "topic hz", "topic delay", "topic bw", "topic pub",
              "node list", "param list", "param get", "param set", "param describe", "param dump",
              "doctor"]
 PLAN_KEYS = {"ok", "code", "message", "request", "stages", "path", "corridor", "trajectory",

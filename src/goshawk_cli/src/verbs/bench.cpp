@@ -129,6 +129,7 @@ void add_bench(Program& program) {
   add_plain(bench, "search", "grid searches beside a plain A*: time, nodes, length, growth");
   add_scenario(bench);
   add_plain(bench, "corridor", "corridor generators: time, volume, faces, obstacles cut");
+  add_plain(bench, "updates", "what an update of a large map costs each stage that follows it");
   add_plain(bench, "trajectory", "planners: durations, speeds, optimisation and whole plans");
   add_plain(bench, "tracking",
             "closed-loop flights: errors by controller, weather and plant, step times");

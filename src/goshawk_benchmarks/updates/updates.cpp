@@ -1,0 +1,175 @@
+// goshawk bench updates: what an update of a large map costs each stage that follows it.
+#include <algorithm>
+#include <functional>
+#include <memory>
+#include <span>
+#include <stdexcept>
+
+#include "common/measure.hpp"
+#include "common/report.hpp"
+#include "goshawk/conversions/geometry.hpp"
+#include "goshawk/conversions/grid.hpp"
+#include "goshawk/core/random.hpp"
+#include "goshawk/corridor_builder/corridor_builder.hpp"
+#include "goshawk/path_search/path_search.hpp"
+
+namespace goshawk::bench {
+namespace {
+
+using Map = std::shared_ptr<const VoxelGrid>;
+constexpr Index3 kSize{500, 500, 100};  // 25 million voxels
+constexpr int kChanged = 1000;          // voxels that an update changes
+
+/// Boxes over a tenth of a known world.
+VoxelGrid make_map(Random& random) {
+  VoxelGrid grid;
+  grid.geometry = {Vec3::Zero(), 0.1, kSize};
+  grid.grown = BitGrid(kSize, true);
+  grid.known = BitGrid(kSize, false, true);
+  grid.inflation_m = 0.2;
+  for (int n = 0; n < 700; ++n) {
+    const Index3 at{30 + random.below(kSize.x - 50), random.below(kSize.y - 20), random.below(80)};
+    for (int z = at.z; z < at.z + 20; ++z) {
+      for (int y = at.y; y < at.y + 10; ++y) grid.grown.set_run(at.x, at.x + 20, y, z, true);
+    }
+  }
+  grid.raw = grid.grown;
+  return grid;
+}
+
+Index3 random_voxel(Random& random) {
+  return {random.below(kSize.x), random.below(kSize.y), random.below(kSize.z)};
+}
+
+/// Voxels of a cube somewhere, as a scan of something near changes them, or anywhere.
+std::vector<Index3> voxels_to_change(bool scattered, Random& random) {
+  std::vector<Index3> voxels;
+  const Index3 corner{random.below(kSize.x - 10), random.below(kSize.y - 10), random.below(90)};
+  for (int k = 0; k < kChanged; ++k) {
+    voxels.push_back(scattered ? random_voxel(random)
+                               : corner + Index3{k % 10, k / 10 % 10, k / 100});
+  }
+  return voxels;
+}
+
+/// What brings the map to one in which these voxels are the other way round.
+GridUpdate make_update(const VoxelGrid& map, std::span<const Index3> voxels) {
+  VoxelGrid changed = map;
+  BitGrid marked(brick_counts(kSize), false);
+  GridUpdate update{map.version, map.version + 1, {}, {}};
+  for (const Index3 i : voxels) {
+    changed.grown.set(i, !map.grown.get(i));
+    changed.raw.set(i, !map.raw.get(i));
+    marked.set({i.x / Brick::kSizeX, i.y / Brick::kSizeY, i.z / Brick::kSizeZ}, true);
+  }
+  const Index3 n = marked.size();
+  for (int k = 0; k < n.x * n.y * n.z; ++k) {
+    const Index3 brick{k % n.x, k / n.x % n.y, k / n.x / n.y};
+    if (marked.get(brick)) update.bricks.push_back(brick_of(changed, brick));
+  }
+  return update;
+}
+
+/// A stage that has the map and takes the next version of it.
+struct Follower {
+  std::string name;
+  std::function<void(const Map&)> follow;
+  std::vector<double> us = {};
+};
+
+path_search::PathSearch search_of(const path_search::Config& config) {
+  return std::move(path_search::PathSearch::create(config)).value();
+}
+
+/// Turns of all followers; what a turn takes is the processor time of this thread.
+class Run {
+ public:
+  explicit Run(Random& random)
+      : random_(random), map_(std::make_shared<const VoxelGrid>(make_map(random))) {
+    path_search::Config search;
+    add_search("path_search", search);
+    search.search_box = "5,5,1,45,45,9";
+    add_search("path_search, search_box", search);
+    search.search_box.clear();
+    search.clearance_m = 0.5;
+    add_search("path_search, clearance_m 0.5", search);
+    add_corridors("corridor_builder and a corridor, grown_grid", {});
+    add_corridors("corridor_builder and a corridor, sphere",
+                  {.margin = corridor_builder::Margin::sphere});
+    for (Follower& f : followers_) f.follow(map_);
+  }
+
+  void measure(Report& report, bool scattered, int updates) {
+    report.progress(scattered ? "voxels anywhere" : "voxels of a cube");
+    std::vector<double> taken_us, bricks;
+    for (Follower& f : followers_) f.us.clear();
+    for (int n = 0; n < updates; ++n) {
+      const auto update = make_update(*map_, voxels_to_change(scattered, random_));
+      goshawk_msgs::msg::VoxelGridUpdate m;
+      m.header(conversions::make_header(0));
+      conversions::fill_msg(update, m);
+      bricks.push_back(double(update.bricks.size()));
+      taken_us.push_back(time_us([&] { map_ = take(m); }, Clock::processor));
+      for (Follower& f : followers_) f.us.push_back(time_us([&] { f.follow(map_); }, Clock::processor));
+    }
+    add_row(report, scattered, "map subscription", taken_us, median(bricks));
+    for (const Follower& f : followers_) add_row(report, scattered, f.name, f.us, median(bricks));
+  }
+
+ private:
+  // As MapSubscription does.
+  Map take(const goshawk_msgs::msg::VoxelGridUpdate& m) const {
+    const auto update = conversions::from_msg(m);
+    VoxelGrid grid = *map_;
+    if (!update || !apply(grid, *update)) throw std::runtime_error("the update does not fit");
+    return std::make_shared<const VoxelGrid>(std::move(grid));
+  }
+
+  void add_search(const std::string& name, const path_search::Config& config) {
+    auto search = std::make_shared<path_search::PathSearch>(search_of(config));
+    followers_.push_back({name, [search](const Map& map) { search->set_map(map); }});
+  }
+
+  void add_corridors(const std::string& name, const corridor_builder::Config& config) {
+    auto builder = std::make_shared<corridor_builder::CorridorBuilder>(
+        std::move(corridor_builder::CorridorBuilder::create(config)).value());
+    auto corridor = std::make_shared<Corridor>();
+    followers_.push_back({name, [=](const Map& map) {
+                            const std::vector<Vec3> path{{0.5, 0.5, 9.5}, {1.5, 0.5, 9.5}};
+                            (void)builder->build(*map, path, *corridor).ok();
+                          }});
+  }
+
+  static void add_row(Report& report, bool scattered, const std::string& stage,
+                      const std::vector<double>& us, double bricks) {
+    std::vector<double> sorted = us;
+    std::ranges::sort(sorted);
+    report.add({{"table", "updates"},
+                {"voxels", std::int64_t{kSize.x} * kSize.y * kSize.z},
+                {"changed", kChanged},
+                {"where", scattered ? "anywhere" : "a cube"},
+                {"bricks", bricks},
+                {"stage", stage},
+                {"median_us", at_share(sorted, 0.5)},
+                {"p99_us", at_share(sorted, 0.99)}});
+  }
+
+  Random& random_;
+  Map map_;
+  std::vector<Follower> followers_;
+};
+
+void run(Report& report) {
+  Random random(1);
+  Run updates(random);
+  for (const bool scattered : {false, true}) {
+    updates.measure(report, scattered, report.options().quick ? 30 : 200);
+  }
+}
+
+}  // namespace
+}  // namespace goshawk::bench
+
+int main(int argc, char** argv) {
+  return goshawk::bench::bench_main(argc, argv, "updates", goshawk::bench::run);
+}
