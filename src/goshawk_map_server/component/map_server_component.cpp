@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 #include <malloc.h>
+#include <spdlog/logger.h>
 #include <optional>
 
 #include "cloud.hpp"
