@@ -13,10 +13,10 @@ from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
 # name of the planner in the report: name here, colour, mark
 PLANNERS = {
-    "goshawk": ("Goshawk, its default", "tab:blue", "o"),
-    "thesis": ("thesis, built anew", "tab:orange", "s"),
-    "ref40": ("Ref. 40, built anew", "tab:green", "^"),
-    "ref42": ("Ref. 42, built anew", "tab:red", "D"),
+    "goshawk": ("Goshawk", "tab:blue", "o"),
+    "thesis": ("thesis", "tab:orange", "s"),
+    "minimum_snap": ("minimum snap (Ref. 40)", "tab:green", "^"),
+    "minimum_jerk": ("minimum jerk (Ref. 42)", "tab:red", "D"),
 }
 
 

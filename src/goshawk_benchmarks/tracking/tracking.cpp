@@ -28,7 +28,7 @@ constexpr int kOdometryEvery_ms = 4;
 constexpr std::int64_t kStart_ns = 1'000'000'000;
 
 struct Mission {
-  tracker::CommittedTrajectory committed;
+  CommittedTrajectory committed;
   std::shared_ptr<flight_check::FlightCheck> judge;
 };
 
@@ -60,16 +60,14 @@ Result<Mission> plan(double density, std::uint64_t seed) {
   if (!corridor) return corridor.error();
   const FlatState start{.position = path->waypoints_map.front()};
   const FlatState goal{.position = path->waypoints_map.back()};
-  auto solution = trajectory_optimizer::TrajectoryOptimizer::create({}).value().optimise(
-      *corridor, start, goal, Limits{});
+  const PlanRequest request{.start = start, .goal = goal, .limits = {}};
+  auto solution =
+      trajectory_optimizer::TrajectoryOptimizer::create({}).value().optimise(request, *corridor);
   if (!solution) return solution.error();
-  return Mission{{.id = seed,
-                  .trajectory = std::move(solution->trajectory),
-                  .polytopes = std::move(corridor->polytopes),
-                  .limits = Limits{},
-                  .start = start,
-                  .goal = goal,
-                  .start_time_ns = kStart_ns},
+  auto committed = CommittedTrajectory::make(
+      {.id = seed, .nominal = std::move(solution->certified), .start_time_ns = kStart_ns});
+  if (!committed) return committed.error();
+  return Mission{*std::move(committed),
                  std::make_shared<flight_check::FlightCheck>(*std::move(judge))};
 }
 
@@ -109,14 +107,14 @@ using StepTimes = std::vector<double>;
 
 Flown fly(const Mission& mission, const std::string& controller, simulator::Config weather,
           const plant::PlantFactory& plant, StepTimes& steps_us) {
-  weather.gust_seed = weather.sensor.seed = int(mission.committed.id);
+  weather.gust_seed = weather.sensor.seed = int(mission.committed.id());
   auto vehicle = simulator::Quadrotor::create(weather, plant).value();
   tracker::Config config;
   config.controller = controller;
   auto tracker = tracker::Tracker::create(config).value();
   Flown flown;
-  if (!vehicle.reset(mission.committed.start.position, 0.0)) return flown;
-  const auto& trajectory = mission.committed.trajectory;
+  if (!vehicle.reset(mission.committed.nominal().start().position, 0.0)) return flown;
+  const Trajectory& trajectory = mission.committed.flown();
   const double duration_s = trajectory.duration_s();
   const int end_ms = int(1000.0 * (duration_s + 2.0));
   std::vector<flight_check::Sample> track;

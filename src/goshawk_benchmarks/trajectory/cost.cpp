@@ -1,10 +1,12 @@
 #include <cmath>
 
 #include "common/measure.hpp"
+#include "goshawk/baselines/thesis_form.hpp"
 #include "goshawk/core/random.hpp"
 #include "goshawk/trajectory_optimizer/active_set_solver.hpp"
-#include "goshawk/trajectory_optimizer/plan.hpp"
+#include "goshawk/trajectory_optimizer/plan_problem.hpp"
 #include "goshawk/trajectory_optimizer/spline_solver.hpp"
+#include "goshawk/trajectory_optimizer/trajectory_optimizer.hpp"
 #include "parts.hpp"
 
 namespace goshawk::bench {
@@ -49,6 +51,13 @@ Corridor wandering_corridor(int segments) {
   return corridor;
 }
 
+// From rest to rest.
+PlanRequest ask(const Corridor& corridor, LimitNorm norm) {
+  return {.start = {.position = corridor.waypoints_map.front()},
+          .goal = {.position = corridor.waypoints_map.back()},
+          .limits = {.norm = norm}};
+}
+
 // Both solvers on one problem, in turns.
 struct Comparison {
   SplineSolver::Outcome interior, active;
@@ -75,18 +84,14 @@ Comparison compare_solvers(const SplineProblem& problem, const SplineSolver::Set
 // The thesis' quadratic programme, durations stretched until it is feasible.
 SplineProblem fixed_problem(int segments) {
   const Corridor corridor = wandering_corridor(segments);
-  FlatState start, goal;
-  start.position = corridor.waypoints_map.front();
-  goal.position = corridor.waypoints_map.back();
-  const Limits limits{.norm = LimitNorm::per_axis};
-  const Request request{corridor, start, goal, limits};
-  Plan plan = thesis_plan(request);
+  const PlanRequest request = ask(corridor, LimitNorm::per_axis);
+  Plan plan = baselines::thesis_plan(request, corridor);
   SplineSolver solver;
   SplineProblem problem;
   Units units;
   do {
     for (double& duration : plan.durations_s) duration *= 1.1;
-    make_problem(request, plan, false, 1.0, HUGE_VAL, problem, units);
+    make_problem(request, corridor, plan, {.scale = false}, problem, units);
   } while (solver.solve(problem, {}).status != SplineSolver::Status::solved);
   return problem;
 }
@@ -123,26 +128,23 @@ Json fixed_row(int segments, int rounds) {
 Json binding_row(double factor, LimitNorm norm, int rounds) {
   constexpr int kSegments = 6;
   const Corridor corridor = wandering_corridor(kSegments);
-  FlatState start, goal;
-  start.position = corridor.waypoints_map.front();
-  goal.position = corridor.waypoints_map.back();
-  const Limits limits{.norm = norm};
+  const PlanRequest request = ask(corridor, norm);
   auto optimizer = TrajectoryOptimizer::create({}).value();
-  const auto soonest = optimizer.optimise(corridor, start, goal, limits);
+  const auto soonest = optimizer.optimise(request, corridor);
   if (!soonest) throw std::runtime_error(soonest.error().message);
   Plan plan;
-  plan.joints.push_back(start);
-  for (const BezierPiece& piece : soonest->trajectory.pieces) {
+  plan.knots.push_back(request.start);
+  for (const BezierPiece& piece : soonest->trajectory().pieces) {
     plan.durations_s.push_back(factor * piece.duration_s);
     plan.polytopes.push_back(piece.polytope);
     FlatState end;
     end.position = piece.control_points.col(5);
-    plan.joints.push_back(end);
+    plan.knots.push_back(end);
   }
   plan.reference_s = plan.duration_s();
   SplineProblem problem;
   Units units;
-  make_problem({corridor, start, goal, limits}, plan, false, 1.0, HUGE_VAL, problem, units);
+  make_problem(request, corridor, plan, {.scale = false}, problem, units);
   const Comparison c = compare_solvers(problem, {.gap = 1e-7, .dual_feasibility = 1e-6}, rounds);
   return {{"limits", norm == LimitNorm::euclidean ? "Euclidean" : "per axis"},
           {"of_the_soonest", factor},
@@ -158,23 +160,21 @@ Json binding_row(double factor, LimitNorm norm, int rounds) {
 // optimise() whole: checks, passes, certificate.
 Json scale_row(int segments, int rounds) {
   const Corridor corridor = wandering_corridor(segments);
-  FlatState start, goal;
-  start.position = corridor.waypoints_map.front();
-  goal.position = corridor.waypoints_map.back();
+  const PlanRequest request = ask(corridor, LimitNorm::euclidean);
   auto optimizer = TrajectoryOptimizer::create({}).value();
-  auto solution = optimizer.optimise(corridor, start, goal, {});
+  auto solution = optimizer.optimise(request, corridor);
   if (!solution) throw std::runtime_error(solution.error().message);
-  const auto timing = compare(
-      "scale", {{"scale", [&] { solution = optimizer.optimise(corridor, start, goal, {}); }}},
-      rounds, Clock::processor);
+  const auto timing =
+      compare("scale", {{"scale", [&] { solution = optimizer.optimise(request, corridor); }}},
+              rounds, Clock::processor);
+  const auto pieces = solution->trajectory().pieces.size();
   return {{"problem", "time and shape, whole optimisation, Euclidean"},
           {"segments", segments},
-          {"pieces", solution->pieces},
+          {"pieces", pieces},
           {"iterations", solution->iterations},
           {"time_us", timing[0].median_us()},
-          {"us_a_piece", timing[0].median_us() / solution->pieces},
-          {"us_a_piece_and_iteration",
-           timing[0].median_us() / solution->pieces / solution->iterations}};
+          {"us_a_piece", timing[0].median_us() / pieces},
+          {"us_a_piece_and_iteration", timing[0].median_us() / pieces / solution->iterations}};
 }
 
 // Both solvers' times over the pieces, as rows of one plot.

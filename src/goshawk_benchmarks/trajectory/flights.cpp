@@ -149,17 +149,17 @@ void draw_by_density(Report& report) {
 
 void measure_flights(Report& report) {
   Json table = Json::array({thesis_row("thesis", 10.561, 0.672, 1.286),
-                            thesis_row("ref40", 13.322, 0.913, 1.372),
-                            thesis_row("ref42", 10.729, 0.821, 1.273)});
+                            thesis_row("minimum_snap", 13.322, 0.913, 1.372),
+                            thesis_row("minimum_jerk", 10.729, 0.821, 1.273)});
   std::vector<Planner> planners = planners_here(report);
   const bool quick = report.options().quick;
-  const auto measure = [&](Task (*make)(double, int), double density, int runs, bool rivals) {
+  const auto measure = [&](Task (*make)(double, int), double density, int runs, bool baselines) {
     std::vector<Tally> tallies(planners.size());
     Task task;
     for (int seed = 1; seed <= runs; ++seed) {
       task = make(density, seed);
       for (std::size_t i = 0; i < planners.size(); ++i) {
-        if (i > 0 && !rivals) continue;
+        if (i > 0 && !baselines) continue;
         if (quick && planners[i].samples() && seed > kQuickSamplingRuns) continue;
         tallies[i].add(planners[i].fly(task), task);
       }

@@ -3,7 +3,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "goshawk/trajectory_optimizer/rivals.hpp"
+#include "goshawk/baselines/polynomial_baselines.hpp"
 
 namespace goshawk::bench {
 namespace {
@@ -25,7 +25,7 @@ FlatState at_rest(const Vec3& position) {
 }  // namespace
 
 const std::vector<std::string>& Planner::names() {
-  static const std::vector<std::string> kNames{"goshawk", "thesis", "ref40", "ref42"};
+  static const std::vector<std::string> kNames{"goshawk", "thesis", "minimum_snap", "minimum_jerk"};
   return kNames;
 }
 
@@ -33,18 +33,20 @@ std::optional<Planner> Planner::make(const std::string& name) {
   Planner planner;
   planner.name_ = name;
   path_search::Config search;
-  search.planner = name == "ref40"   ? path_search::Planner::rrtstar
-                   : name == "ref42" ? path_search::Planner::astar
-                                     : path_search::Planner::jastar;
+  search.planner = planner.samples()        ? path_search::Planner::rrtstar
+                   : name == "minimum_jerk" ? path_search::Planner::astar
+                                            : path_search::Planner::jastar;
   auto made = path_search::PathSearch::create(search);
   if (!made) return std::nullopt;
   planner.search_ = *std::move(made);
-  if (name == "ref40") return planner;
+  if (planner.samples()) return planner;
   planner.builder_ = corridor_builder::CorridorBuilder::create({}).value();
-  trajectory_optimizer::Config config;
-  if (name == "thesis") config.method = "thesis";
-  if (name == "ref42") config.method = "polynomial";
-  planner.optimizer_ = trajectory_optimizer::TrajectoryOptimizer::create(config).value();
+  if (name == "goshawk") {
+    planner.optimizer_ = trajectory_optimizer::TrajectoryOptimizer::create({}).value();
+  } else {
+    planner.baseline_ =
+        baselines::BaselineOptimizer::create({from_word<baselines::Method>(name).value()}).value();
+  }
   return planner;
 }
 
@@ -58,33 +60,32 @@ Flight Planner::fly(const Task& task) {
 Flight Planner::plan(const Task& task) {
   Flight flight;
   const auto path = timed(flight.search_ms, [&] { return search_->plan(task.start, task.goal); });
-  if (!path) {
-    flight.why = path.error().message;
-    return flight;
-  }
+  if (!path) return flight;
   flight.path_length_m = path->pruned_length_m;
-  if (!optimizer_) {
-    auto trajectory = timed(flight.optimise_ms, [&] {
-      return trajectory_optimizer::minimum_snap(path->waypoints_map, at_rest(task.start),
-                                                at_rest(task.goal), task.limits);
-    });
-    flight.solved = trajectory.ok();
-    if (trajectory) flight.trajectory = *std::move(trajectory);
-    return flight;
+  Result<Corridor> corridor = Corridor{};
+  if (builder_) {
+    corridor =
+        timed(flight.corridor_ms, [&] { return builder_->build(*task.grid, path->waypoints_map); });
+    if (!corridor) return flight;
   }
-  const auto corridor =
-      timed(flight.corridor_ms, [&] { return builder_->build(*task.grid, path->waypoints_map); });
-  if (!corridor) {
-    flight.why = corridor.error().message;
-    return flight;
-  }
-  auto solution = timed(flight.optimise_ms, [&] {
-    return optimizer_->optimise(*corridor, at_rest(task.start), at_rest(task.goal), task.limits);
+  auto trajectory = timed(flight.optimise_ms, [&] {
+    return builder_ ? optimise(task, *corridor)
+                    : baselines::minimum_snap(path->waypoints_map, at_rest(task.start),
+                                              at_rest(task.goal), task.limits);
   });
-  flight.solved = flight.certified = solution.ok();
-  if (!solution) flight.why = solution.error().message;
-  if (solution) flight.trajectory = std::move(solution->trajectory);
+  flight.solved = trajectory.ok();
+  flight.certified = trajectory.ok() && builder_;
+  if (trajectory) flight.trajectory = *std::move(trajectory);
   return flight;
+}
+
+Result<Trajectory> Planner::optimise(const Task& task, const Corridor& corridor) {
+  const PlanRequest request{
+      .start = at_rest(task.start), .goal = at_rest(task.goal), .limits = task.limits};
+  auto solution =
+      baseline_ ? baseline_->optimise(request, corridor) : optimizer_->optimise(request, corridor);
+  if (!solution) return solution.error();
+  return solution->trajectory();
 }
 
 bool is_safe(const Trajectory& trajectory, const VoxelGrid& grid) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "goshawk/baselines/baseline_optimizer.hpp"
 #include "goshawk/core/grid_geometry.hpp"
 #include "goshawk/core/trajectory.hpp"
 #include "goshawk/corridor_builder/corridor_builder.hpp"
@@ -26,7 +27,6 @@ struct Task {
 struct Flight {
   bool solved = false;
   bool certified = false;
-  std::string why;  // not solved
   double search_ms = 0.0, corridor_ms = 0.0, optimise_ms = 0.0;
   double path_length_m = 0.0;  // of the waypoints
   Trajectory trajectory;
@@ -34,32 +34,33 @@ struct Flight {
   double plan_ms() const { return search_ms + corridor_ms + optimise_ms; }
 };
 
-/// A whole planner: search, corridor where it has one, trajectory.
+/// A whole planner: search, corridor if it has one, trajectory.
 class Planner {
  public:
-  /// goshawk: JA*, corridor, time and shape together; thesis: JA*, corridor, one quintic a segment;
-  /// ref40: RRT* and minimum snap, no corridor; ref42: A*, corridor, polynomial with re-checks
-  /// (thesis, Table 3)
+  /// goshawk: JA*, corridor, time and shape together; and the three of the thesis' Table 3:
+  /// thesis: JA*, corridor, one quintic a segment; minimum_snap (its Ref. [40]): RRT* and minimum
+  /// snap, no corridor; minimum_jerk (its Ref. [42]): A*, corridor, polynomial that is checked and
+  /// planned again
   static const std::vector<std::string>& names();
 
-  /// @return nothing where a part of it is not built in
+  /// @return nothing if a part of it is not built in
   static std::optional<Planner> make(const std::string& name);
 
   const std::string& name() const { return name_; }
   /// Searches by sampling, which takes a second or so.
-  bool samples() const { return name_ == "ref40"; }
-  /// Plans twice and measures the second time, when memory is there; once where it samples.
+  bool samples() const { return name_ == "minimum_snap"; }
+  /// Plans twice and measures the second time, when memory is there; once if it samples.
   Flight fly(const Task& task);
 
  private:
   Flight plan(const Task& task);
-  bool optimise(const Task& task, const std::vector<Vec3>& waypoints, const Corridor& corridor,
-                Flight& flight);
+  Result<Trajectory> optimise(const Task& task, const Corridor& corridor);
 
   std::string name_;
   std::optional<path_search::PathSearch> search_;
-  std::optional<corridor_builder::CorridorBuilder> builder_;
-  std::optional<trajectory_optimizer::TrajectoryOptimizer> optimizer_;  // none: minimum snap
+  std::optional<corridor_builder::CorridorBuilder> builder_;  // none: minimum snap
+  std::optional<trajectory_optimizer::TrajectoryOptimizer> optimizer_;
+  std::optional<baselines::BaselineOptimizer> baseline_;
 };
 
 /// The second opinion: every 5 ms of the curve against the grown map, sharing nothing with the

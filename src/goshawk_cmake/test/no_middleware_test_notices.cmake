@@ -16,6 +16,7 @@ function(verdict_of file line result)
   if(status EQUAL 0)
     set(said accepted)
   endif()
+  string(REGEX REPLACE "[ \n]+" " " said "${said}")  # CMake breaks long lines
   set(${result} "${said}" PARENT_SCOPE)
 endfunction()
 

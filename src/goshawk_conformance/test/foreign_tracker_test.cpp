@@ -45,18 +45,11 @@ class ForeignTracker {
  private:
   void on_commit(const msg::CommittedTrajectory& m) {
     const std::uint64_t id = m.nominal().request().id();
-    const auto received = conversions::from_msg(m);
+    auto received = conversions::from_msg(m);
     Status status = received ? success() : received.error();
     if (received) {
-      status = tracker_.accept({.id = id,
-                                .trajectory = received->flown(),
-                                .polytopes = received->flown_polytopes(),
-                                .limits = received->nominal().limits(),
-                                .start = received->nominal().start(),
-                                .goal = received->nominal().goal(),
-                                .start_time_ns = received->start_time_ns(),
-                                .yaw_rad = received->yaw_rad()},
-                               node_.now_ns());
+      const std::int64_t start_ns = received->start_time_ns();
+      status = tracker_.accept(*std::move(received), start_ns, node_.now_ns());
     }
     if (status || fault_ == TrackerFault::believes_all) return reporter_.answered(id, {});
     reporter_.failed(id, status.error());

@@ -41,6 +41,10 @@ constexpr std::array kNames{
     CodeName{ErrorCode::io_failed, "io_failed"},
     CodeName{ErrorCode::collision, "collision"},
     CodeName{ErrorCode::cancelled, "cancelled"},
+    CodeName{ErrorCode::trajectory_blocked, "trajectory_blocked"},
+    CodeName{ErrorCode::process_stalled, "process_stalled"},
+    CodeName{ErrorCode::clock_set, "clock_set"},
+    CodeName{ErrorCode::second_writer, "second_writer"},
 };
 
 constexpr auto kCodes = [] {

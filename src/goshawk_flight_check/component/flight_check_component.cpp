@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -6,6 +8,7 @@
 #include "goshawk/conversions/vehicle.hpp"
 #include "goshawk/flight_check/config.hpp"
 #include "goshawk/flight_check/planned_track.hpp"
+#include "goshawk/flight_check/watch.hpp"
 #include "goshawk/runtime/component.hpp"
 #include "goshawk/stage/intake.hpp"
 #include "octomap_msgs.h"
@@ -16,15 +19,45 @@ namespace {
 using namespace goshawk::runtime;
 using namespace goshawk::stage;
 namespace msg = goshawk_msgs::msg;
+using nav_msgs::msg::Odometry;
+using octomap_msgs::msg::Octomap;
 
-constexpr double kAfterLanding_s = 1.0;  // how long after its end a leg still counts as flown
+constexpr double kPlanStep_s = 0.01;
 
 double seconds(std::int64_t ns) {
   return double(ns) * 1e-9;
 }
 
-/// octomap_binary, committed_trajectory, odom or odom_true -> stage_report: each committed
-/// trajectory's verdict when it comes, the flown leg's when it is over, and a contact at once.
+std::vector<PlannedPiece> pieces_of(const Trajectory& trajectory) {
+  std::vector<PlannedPiece> pieces;
+  for (const auto& piece : trajectory.pieces) {
+    PlannedPiece p;
+    for (int j = 0; j < 6; ++j) p.control_points_map[std::size_t(j)] = piece.control_points.col(j);
+    p.duration_s = piece.duration_s;
+    pieces.push_back(p);
+  }
+  return pieces;
+}
+
+Result<Plan> plan_of(const msg::CommittedTrajectory& m) {
+  const auto committed = conversions::from_msg(m);
+  if (!committed) return committed.error();
+  const auto yaw = [&](double t_s) { return committed->yaw_at(t_s); };
+  const auto track_of = [&](const CertifiedTrajectory& part, double start_s) {
+    return planned_track(pieces_of(part.trajectory()), kPlanStep_s, yaw, start_s);
+  };
+  auto nominal = track_of(committed->nominal(), 0.0);
+  if (!nominal) return nominal.error();
+  Plan plan{committed->id(), seconds(committed->start_time_ns()), *std::move(nominal), {}};
+  if (!committed->stop()) return plan;
+  auto stop = track_of(committed->stop()->trajectory, committed->stop()->after_s);
+  if (!stop) return stop.error();
+  plan.stop = *std::move(stop);
+  return plan;
+}
+
+/// octomap_binary, committed_trajectory, odom or odom_true -> stage_report: a verdict on each
+/// committed trajectory at once, on the flown leg when it is over, and on a contact at once.
 class FlightCheckComponent : public Component {
  public:
   explicit FlightCheckComponent(Node& node)
@@ -32,119 +65,96 @@ class FlightCheckComponent : public Component {
         config_(node.parameters<Config>()),
         reporter_(node, StageRole::flight_check, "fcl") {
     if (auto status = config_.body.check(); !status) throw StartupFault(status.error());
-    node.subscribe<octomap_msgs::msg::Octomap>(
-        "octomap_binary", Qos::latched(),
-        [this](const octomap_msgs::msg::Octomap& m, const MessageInfo&) { on_map(m); });
+    node.subscribe<Octomap>("octomap_binary", Qos::latched(),
+                            [this](const Octomap& m, const MessageInfo&) { new_map_ = m; });
     node.subscribe<msg::CommittedTrajectory>(
         "committed_trajectory", Qos::latched(),
         [this](const msg::CommittedTrajectory& m, const MessageInfo& info) { on_commit(m, info); });
-    node.subscribe<nav_msgs::msg::Odometry>(
-        "odom", Qos::best_effort(100),
-        [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) {
-          if (!knows_truth_) on_odometry(m);
-        });
-    node.subscribe<nav_msgs::msg::Odometry>(
-        "odom_true", Qos::best_effort(100),
-        [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) {
-          if (!std::exchange(knows_truth_, true)) track_.clear();
-          on_odometry(m);
-        });
-    node.every(config_.period_s, [this] { judge_flown(); });
-    reporter_.ready("judges a body of reach " + std::to_string(config_.body.reach_m()) + " m");
+    node.subscribe<Odometry>("odom", Qos::best_effort(100),
+                             [this](const Odometry& m, const MessageInfo&) {
+                               if (!knows_truth_) on_odometry(m);
+                             });
+    node.subscribe<Odometry>("odom_true", Qos::best_effort(100),
+                             [this](const Odometry& m, const MessageInfo&) {
+                               if (!std::exchange(knows_truth_, true)) watch_.forget_track();
+                               on_odometry(m);
+                             });
+    node.subscribe<msg::VehicleStatus>(
+        "vehicle_status", Qos::best_effort(),
+        [this](const msg::VehicleStatus& m, const MessageInfo&) { on_status(m); });
+    node.every(config_.period_s, [this] {
+      read_map();
+      watch_.tick(seconds(node_.now_ns()));
+      tell({});
+    });
+    reporter_.ready(fmt::format("judges a body of reach {:.3g} m", config_.body.reach_m()));
   }
 
  private:
-  struct Leg {
-    std::uint64_t id = 0;
-    double end_s = 0.0;
-    std::optional<Verdict> flown = {};  // the part so far
-    bool reported = false;
-  };
-
-  void on_map(const octomap_msgs::msg::Octomap& m) {
-    if (!m.binary() || m.id() != "OcTree") {
-      return reporter_.fault(
-          fail(ErrorCode::map_malformed, "octomap_binary carries no binary OcTree: not judged"));
+  /// The newest map is read when it is needed: others may have come before it.
+  void read_map() {
+    if (!new_map_) return;
+    const auto m = std::exchange(new_map_, {});
+    if (!m->binary() || m->id() != "OcTree") {
+      return reporter_.fault(fail(ErrorCode::map_malformed,
+                                  "octomap_binary does not hold a binary OcTree: nothing can be "
+                                  "judged against it"));
     }
-    const std::string_view payload(reinterpret_cast<const char*>(m.data().data()), m.data().size());
-    auto check = FlightCheck::from_payload(payload, m.resolution(), config_.body, config_.options);
+    const std::string_view bytes(reinterpret_cast<const char*>(m->data().data()), m->data().size());
+    auto check = FlightCheck::from_payload(bytes, m->resolution(), config_.body, config_.options);
     if (!check) return reporter_.fault(check.error());
-    check_ = std::move(*check);
+    watch_.set_map(*std::move(check));
   }
 
   void on_commit(const msg::CommittedTrajectory& m, const MessageInfo& info) {
-    finish_leg();
-    const std::uint64_t id = m.nominal().request().id();
-    const auto committed = conversions::from_msg(m);
-    if (!committed) return reporter_.failed(id, committed.error());
-    if (!check_)
-      return reporter_.failed(id, fail(ErrorCode::no_map, "no map came yet: not judged"));
-    leg_ = Leg{.id = id,
-               .end_s = seconds(committed->start_time_ns()) + committed->flown().duration_s()};
-    const auto [verdict, compute_ns] = timed([&] { return judge_planned(*committed); });
-    const Timing timing{.wire_ns = wire_time_ns(m.header(), info), .compute_ns = compute_ns};
-    if (!verdict) return reporter_.failed(id, verdict.error(), timing);
-    report(id, "planned", *verdict, timing);
-  }
-
-  // The nominal part to its end, and what is flown if nothing newer comes.
-  Result<Verdict> judge_planned(const CommittedTrajectory& committed) const {
-    auto nominal = judge_planned(committed.nominal().trajectory(), committed);
-    if (!nominal || !committed.stop()) return nominal;
-    auto stopped = judge_planned(committed.flown(), committed);
-    return !stopped || worse(*stopped, *nominal) ? stopped : nominal;
-  }
-
-  Result<Verdict> judge_planned(const Trajectory& trajectory,
-                                const CommittedTrajectory& committed) const {
-    std::vector<PlannedPiece> pieces;
-    for (const auto& piece : trajectory.pieces) {
-      PlannedPiece p;
-      for (int j = 0; j < 6; ++j)
-        p.control_points_map[std::size_t(j)] = piece.control_points.col(j);
-      p.duration_s = piece.duration_s;
-      pieces.push_back(p);
+    read_map();
+    const auto begin = std::chrono::steady_clock::now();
+    if (auto plan = plan_of(m)) {
+      watch_.commit(*std::move(plan));
+    } else {
+      watch_.commit_unjudged(m.nominal().request().id(), plan.error());
     }
-    const auto track =
-        planned_track(pieces, 0.01, [&](double t_s) { return committed.yaw_at(t_s); });
-    if (!track) return track.error();
-    return check_->judge(*track);
+    const std::chrono::nanoseconds took = std::chrono::steady_clock::now() - begin;
+    tell({.wire_ns = wire_time_ns(m.header(), info), .compute_ns = took.count()});
   }
 
-  void on_odometry(const nav_msgs::msg::Odometry& m) {
+  void on_odometry(const Odometry& m) {
     const auto state = conversions::from_msg(m);
     if (!state) return;  // the tracker reports bad odometry
     const double t_s = seconds(conversions::to_ns(m.header().stamp()));
-    if (!track_.empty() && t_s < track_.back().t_s) track_.clear();  // a clock that began anew
-    track_.push_back({t_s, state->position_map, state->q_map_base});
+    watch_.fly({{t_s, state->position_map, state->q_map_base}, state->velocity_map.norm()});
   }
 
-  // What was flown since the last time, joined to it without a gap.
-  void judge_flown() {
-    if (!check_ || track_.size() < 2) return;
-    const auto verdict = check_->judge(track_);
-    track_.erase(track_.begin(), track_.end() - 1);
-    if (!verdict) return reporter_.fault(verdict.error());
-    if (verdict->touched && !touching_) {
-      reporter_.failed(leg_ ? leg_->id : 0, fail(ErrorCode::collision, verdict->sentence));
+  /// A counter that goes back is that of a restarted plant, which hovers where it begins.
+  void on_status(const msg::VehicleStatus& m) {
+    if (std::exchange(resets_, m.resets()) != m.resets()) watch_.forget_track();
+  }
+
+  /// @param timing of the verdict on a plan
+  void tell(const Timing& timing) {
+    for (const auto& finding : watch_.take_findings()) {
+      switch (finding.kind) {
+        case Finding::Kind::planned:
+          report(finding, "planned", timing);
+          break;
+        case Finding::Kind::flown:
+          report(finding, "flown", {});
+          break;
+        case Finding::Kind::contact:
+          reporter_.failed(finding.request_id,
+                           fail(ErrorCode::collision, finding.outcome->sentence));
+          break;
+        case Finding::Kind::event:
+          reporter_.fault(finding.outcome.error());
+          break;
+      }
     }
-    touching_ = verdict->touched;
-    if (!leg_) return;
-    if (!leg_->flown || worse(*verdict, *leg_->flown)) leg_->flown = *verdict;
-    if (track_.back().t_s > leg_->end_s + kAfterLanding_s) finish_leg();
   }
 
-  static bool worse(const Verdict& a, const Verdict& b) {
-    return !b.touched && (a.touched || a.clearance_m < b.clearance_m);
-  }
-
-  void finish_leg() {
-    if (!leg_ || leg_->reported || !leg_->flown) return;
-    leg_->reported = true;
-    report(leg_->id, "flown", *leg_->flown, {});
-  }
-
-  void report(std::uint64_t id, const std::string& what, const Verdict& v, Timing timing) {
+  void report(const Finding& finding, const std::string& what, const Timing& timing) {
+    const std::uint64_t id = finding.request_id;
+    if (!finding.outcome) return reporter_.failed(id, finding.outcome.error(), timing);
+    const Verdict& v = *finding.outcome;
     if (v.touched) {
       return reporter_.failed(id, fail(ErrorCode::collision, what + ": " + v.sentence), timing);
     }
@@ -164,10 +174,9 @@ class FlightCheckComponent : public Component {
   Node& node_;
   Config config_;
   StageReporter reporter_;
-  std::optional<FlightCheck> check_;
-  std::vector<Sample> track_;  // not judged yet, and the last that was
-  std::optional<Leg> leg_;
-  bool touching_ = false;
+  std::optional<Octomap> new_map_;  // not read yet
+  Watch watch_;
+  std::uint32_t resets_ = 0;  // of the vehicle's position
   bool knows_truth_ = false;  // a simulator with noisy sensors tells the truth beside them
 };
 

@@ -1,5 +1,7 @@
 #include "goshawk/flight_check/body.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 namespace goshawk::flight_check {
@@ -11,7 +13,7 @@ constexpr double kLargest_m = 100.0;
 void complain(std::string& faults, const char* name, double value_m) {
   if (value_m > 0.0 && value_m <= kLargest_m) return;  // NaN fails both
   if (!faults.empty()) faults += ", ";
-  faults += std::string(name) + " = " + std::to_string(value_m);
+  faults += fmt::format("{} = {}", name, value_m);
 }
 
 }  // namespace

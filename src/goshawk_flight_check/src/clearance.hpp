@@ -19,24 +19,24 @@ struct Pose {
 };
 
 struct Clearance {
-  double distance_m = 0.0;  // [m] 0 in contact, infinity where there is no obstacle
+  double distance_m = 0.0;  // [m] 0 in contact, infinity if there is no obstacle
   /// [m] nearest point of an obstacle; in contact where they meet, or the body's own position
-  /// where FCL cannot say, or where there is no obstacle
+  /// if FCL cannot say, or if there is no obstacle
   Vec3 obstacle_map = Vec3::Zero();
 };
 
 /// Distances between one body and the occupied leaves of one OctoMap, by FCL.
 class ClearanceMeter {
  public:
-  /// FCL's own GJK overestimates the distance of a cylinder and a box by up to 1e-5 m; whatever
-  /// is nearer than this counts as contact.
+  /// FCL's own GJK overestimates the distance of a cylinder and a box by up to 1e-5 m; anything
+  /// nearer than this counts as contact.
   static constexpr double kContact_m = 1e-4;
 
   /// @pre inner nodes of the tree are up to date; body.check() ok
   ClearanceMeter(std::shared_ptr<const octomap::OcTree> tree, const Body& body);
 
-  /// @param at_most_m [m] the clearance is known not to be larger: makes the search some ten
-  /// times faster. A wrong bound costs time, never a wrong answer.
+  /// @param at_most_m [m] the clearance is known not to be larger: makes the search about
+  /// ten times faster. A wrong bound costs time, never a wrong answer.
   Clearance measure(const Pose& pose,
                     double at_most_m = std::numeric_limits<double>::infinity()) const;
 

@@ -1,5 +1,7 @@
 #include "octomap_file.hpp"
 
+#include <fmt/format.h>
+
 #include <bit>
 #include <cmath>
 #include <fstream>
@@ -32,13 +34,13 @@ Header read_header(std::istream& in) {
   return header;
 }
 
-/// OctoMap's reader follows whatever bits it gets, past the end of the file too. So the shape of
-/// the tree is walked through first: every node there, none deeper than keys reach.
+/// OctoMap's reader trusts the bits it gets and reads past the end of the file. So the shape of the
+/// tree is checked first: every node is there, and none is deeper than keys reach.
 class ShapeCheck {
  public:
   explicit ShapeCheck(std::string_view data) : data_(data) {}
 
-  /// @return whether a .bt node (two bits a child, 11: an inner node follows) is whole
+  /// @return whether a .bt node (two bits a child, 11: an inner node follows) is complete
   bool binary_node(int depth) {
     if (depth >= kTreeDepth || data_.size() - at_ < 2) return false;
     int inner = 0;
@@ -73,20 +75,23 @@ class ShapeCheck {
 };
 
 Error malformed(const std::filesystem::path& file, const std::string& what) {
-  return fail(ErrorCode::map_malformed, "'" + file.string() + "' is not a whole OctoMap file: " +
-                                            what + "; make it again or fetch it again");
+  return fail(ErrorCode::map_malformed,
+              fmt::format("'{}' is not a complete OctoMap file: {}; create or download it again",
+                          file.string(), what));
 }
 
 Status check_header(const std::filesystem::path& file, const Header& header) {
   if (!header.complete) return malformed(file, "its header has no line 'data'");
   if (header.id != "OcTree") {
-    return malformed(file, "it holds a tree of kind '" + header.id + "', and only OcTree is known");
+    return malformed(file,
+                     "it holds a tree of kind '" + header.id + "', and only OcTree is supported");
   }
   if (!(header.resolution_m > 0.0) || !std::isfinite(header.resolution_m)) {
     return malformed(file, "its resolution is not above zero");
   }
   if (header.nodes == 0) {
-    return fail(ErrorCode::map_empty, "'" + file.string() + "' holds no voxel; make the map again");
+    return fail(ErrorCode::map_empty,
+                "'" + file.string() + "' holds no voxel: create the map again");
   }
   return success();
 }
@@ -115,11 +120,11 @@ Result<std::unique_ptr<octomap::OcTree>> read_octomap(const std::filesystem::pat
   ShapeCheck shape(data);
   const bool binary = ending == ".bt";
   if (!(binary ? shape.binary_node(0) : shape.full_node(0))) {
-    return malformed(file, "its tree breaks off or is too deep");
+    return malformed(file, "its tree is truncated or too deep");
   }
   if (shape.nodes() != header.nodes) {
-    return malformed(file, "it claims " + std::to_string(header.nodes) + " nodes and has " +
-                               std::to_string(shape.nodes()));
+    return malformed(
+        file, fmt::format("its header promises {} nodes, it has {}", header.nodes, shape.nodes()));
   }
   auto tree = std::make_unique<octomap::OcTree>(header.resolution_m);
   std::istringstream nodes(data);
@@ -141,7 +146,7 @@ Result<std::unique_ptr<octomap::OcTree>> read_payload(std::string_view payload,
   }
   if (ShapeCheck shape(payload); !shape.binary_node(0)) {
     return fail(ErrorCode::map_malformed,
-                "the OctoMap message's tree breaks off or is too deep: is it binary?");
+                "the OctoMap message's tree is truncated or too deep: is it binary?");
   }
   auto tree = std::make_unique<octomap::OcTree>(resolution_m);
   std::istringstream nodes{std::string(payload)};

@@ -39,10 +39,11 @@ std::string piece_fault(const PlannedPiece& piece) {
   return {};
 }
 
-Status check(std::span<const PlannedPiece> pieces, double step_s) {
+Status check(std::span<const PlannedPiece> pieces, double step_s, double start_s) {
   const auto wrong = [](const std::string& what) { return fail(ErrorCode::invalid_input, what); };
   if (pieces.empty()) return wrong("the trajectory has no piece: plan again");
   if (!(step_s > 0.0)) return wrong("to sample a trajectory, use a step above zero");
+  if (!std::isfinite(start_s)) return wrong("to sample a trajectory, use a finite start");
   double samples = 0.0;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const std::string fault = piece_fault(pieces[i]);
@@ -70,10 +71,10 @@ Quaternion flat_attitude(const Vec3& acceleration_map, double yaw_rad) {
 }
 
 Result<std::vector<Sample>> planned_track(std::span<const PlannedPiece> pieces, double step_s,
-                                          const std::function<double(double)>& yaw_rad_at) {
-  if (auto status = check(pieces, step_s); !status) return status.error();
+                                          const std::function<double(double)>& yaw_rad_at,
+                                          double start_s) {
+  if (auto status = check(pieces, step_s, start_s); !status) return status.error();
   std::vector<Sample> track;
-  double start_s = 0.0;
   for (const PlannedPiece& piece : pieces) {
     const int steps = std::max(1, int(std::ceil(piece.duration_s / step_s)));
     for (int k = track.empty() ? 0 : 1; k <= steps; ++k) {
@@ -83,7 +84,7 @@ Result<std::vector<Sample>> planned_track(std::span<const PlannedPiece> pieces, 
       const double yaw_rad = yaw_rad_at ? yaw_rad_at(t_s) : 0.0;
       if (!std::isfinite(yaw_rad)) {
         return fail(ErrorCode::invalid_input,
-                    fmt::format("its yaw at {:.3g} s is not finite", t_s));
+                    fmt::format("the planned yaw at {:.3g} s is not finite: plan again", t_s));
       }
       track.push_back({t_s, moved.position_map, flat_attitude(moved.acceleration_map, yaw_rad)});
     }

@@ -127,6 +127,72 @@ TEST(FlightCheck, SaysTheSameTwiceAndForATrackCutIntoPieces) {
   EXPECT_NEAR(check.judge(fine).value().clearance_m, once.clearance_m, 1e-3);
 }
 
+// A weaving flight of 10 s at 100 Hz through random voxels.
+std::vector<Sample> weave(Random& random) {
+  const double a = random.uniform(0.2, 0.6), b = random.uniform(0.1, 0.4);
+  std::vector<Sample> track;
+  for (int k = 0; k <= 1000; ++k) {
+    const double t_s = 0.01 * k;
+    track.push_back(at(t_s, Vec3(-2.0 + 0.4 * t_s, a * std::sin(t_s), b * std::cos(2.0 * t_s)),
+                       turn(0.3 * std::sin(3.0 * t_s), {0, 1, 0.2})));
+  }
+  return track;
+}
+
+TEST(FlightCheck, MeasuresFewPosesOfALongFlightAndFindsWhatAllWouldShow) {
+  Random random(13);
+  int touched = 0;
+  for (int flight = 0; flight < 30; ++flight) {
+    std::vector<Index3> voxels;
+    for (int i = 0; i < 4; ++i) {
+      voxels.push_back({random.below(40) - 20, random.below(24) - 12, random.below(16) - 8});
+    }
+    const auto check = FlightCheck::from_tree(tree_of(voxels)).value();
+    const auto track = weave(random);
+    const Verdict verdict = check.judge(track).value();
+    double smallest_m = std::numeric_limits<double>::infinity();
+    std::int64_t measured = 0;
+    for (const Sample& s : track) {
+      const Verdict here = check.judge(std::span(&s, 1)).value();
+      smallest_m = std::min(smallest_m, here.clearance_m);
+      measured += here.queries;
+      if (here.touched) break;
+    }
+    touched += verdict.touched;
+    if (smallest_m == 0.0) {
+      EXPECT_TRUE(verdict.touched) << flight;
+    } else if (!verdict.touched) {
+      EXPECT_NEAR(verdict.clearance_m, smallest_m, 1.1e-3) << flight;
+      EXPECT_LT(verdict.queries, measured / 4) << flight;
+    }
+  }
+  EXPECT_GT(touched, 3);
+  EXPECT_LT(touched, 27);
+}
+
+TEST(FlightCheck, NeedsAHandfulOfMeasurementsIfOnlySmallerClearancesMatter) {
+  const auto check = FlightCheck::from_tree(tree_of(wall_at_x(10, 20))).value();
+  std::vector<Sample> along;  // 0.35 m from the wall, all the way
+  for (int k = 0; k <= 400; ++k) along.push_back(at(0.01 * k, Vec3(0.5, -2 + 0.01 * k, 0)));
+  EXPECT_LT(check.judge(along, 0.1).value().queries, 20);
+  EXPECT_LT(check.judge(along, 0.0).value().queries, 20);
+  EXPECT_FALSE(check.judge(along, 0.0).value().touched);
+  along[300].position_map.x() = 1.0;
+  EXPECT_TRUE(check.judge(along, 0.0).value().touched);
+  along[300].position_map.x() = 0.8;
+  EXPECT_NEAR(check.judge(along, 0.2).value().clearance_m, 0.05, 1e-3);
+}
+
+TEST(FlightCheck, FindsTheFirstContactOfSeveral) {
+  std::vector<Index3> voxels = wall_at_x(0, 5);
+  for (const Index3& i : wall_at_x(20, 5)) voxels.push_back(i);
+  std::vector<Sample> through;
+  for (int k = 0; k <= 600; ++k) through.push_back(at(0.01 * k, Vec3(-2 + 0.01 * k, 0.03, 0.03)));
+  const Verdict v = judge(tree_of(voxels), through);
+  EXPECT_TRUE(v.touched);
+  EXPECT_NEAR(v.clearance_t_s, 2.0 - 0.15, 1e-3);
+}
+
 TEST(FlightCheck, TouchesFromTheFirstSampleOn) {
   const auto v =
       judge(tree_of({{0, 0, 0}}), {at(3.0, Vec3(0.05, 0.05, 0.05)), at(4.0, Vec3(5, 5, 5))});

@@ -78,6 +78,18 @@ TEST(PlannedTrack, TurnsAsItsYawIsPlanned) {
   EXPECT_EQ(planned_track(pieces, 0.1, lost).code(), ErrorCode::invalid_input);
 }
 
+TEST(PlannedTrack, CountsFromItsStart) {
+  const auto turning = [](double t_s) { return t_s; };
+  const auto track =
+      planned_track(std::vector{line({0, 0, 1}, {1, 0, 1}, 0.5)}, 0.1, turning, 1.25).value();
+  EXPECT_DOUBLE_EQ(track.front().t_s, 1.25);
+  EXPECT_NEAR(track.back().t_s, 1.75, 1e-12);
+  for (const Sample& s : track) {
+    const Vec3 heading = s.q_map_base * Vec3::UnitX();
+    EXPECT_NEAR(std::atan2(heading.y(), heading.x()), s.t_s, 1e-9);
+  }
+}
+
 TEST(PlannedTrack, IsJudgedLikeAFlownOne) {
   const std::vector<PlannedPiece> pieces{line({-2, 0, 0.05}, {2, 0, 0.05}, 2.0)};
   const auto track = planned_track(pieces).value();
@@ -97,6 +109,7 @@ TEST(PlannedTrack, RefusesWhatIsNoTrajectory) {
   EXPECT_EQ(code({good}, 0.0), ErrorCode::invalid_input);
   EXPECT_EQ(code({good}, 1e-9), ErrorCode::invalid_input);
   EXPECT_EQ(code({good}), ErrorCode::ok);
+  EXPECT_EQ(planned_track(std::vector{good}, 0.01, {}, NAN).code(), ErrorCode::invalid_input);
 }
 
 }  // namespace

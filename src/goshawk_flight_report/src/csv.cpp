@@ -1,9 +1,11 @@
-#include <charconv>
+#include <fmt/format.h>
+
 #include <cmath>
+#include <iterator>
 
 #include "file.hpp"
 #include "goshawk/flight_report/files.hpp"
-#include "goshawk/flight_report/polytope_mesh.hpp"
+#include "goshawk/visualization/polytope_mesh.hpp"
 
 namespace goshawk::flight_report {
 
@@ -11,18 +13,14 @@ namespace {
 
 constexpr double kMostRows = 1e7;
 
-/// Shortest text that reads back as the same number, whatever the locale.
-void append(std::string& text, double value) {
-  char digits[32];
-  const auto end = std::to_chars(digits, digits + sizeof digits, value).ptr;
-  text.append(digits, end);
+/// fmt writes the shortest text that reads back as the same number, whatever the locale.
+template <typename... Values>
+void append(std::string& text, fmt::format_string<Values...> format, Values&&... values) {
+  fmt::format_to(std::back_inserter(text), format, std::forward<Values>(values)...);
 }
 
-void append(std::string& text, const Vec3& v) {
-  for (int axis = 0; axis < 3; ++axis) {
-    text += ',';
-    append(text, v[axis]);
-  }
+void append_columns(std::string& text, const Vec3& v) {
+  append(text, ",{},{},{}", v.x(), v.y(), v.z());
 }
 
 void append_trajectory(std::string& text, const Leg& leg, std::size_t number, int steps) {
@@ -30,16 +28,32 @@ void append_trajectory(std::string& text, const Leg& leg, std::size_t number, in
   for (int k = 0; k <= steps; ++k) {
     const double t_s = duration_s * k / steps;
     const FlatState state = leg.trajectory.sample(t_s);
-    text += std::to_string(number) + ',';
-    append(text, leg.start_t_s + t_s);
+    append(text, "{},{}", number, leg.start_t_s + t_s);
     for (const Vec3& v : {state.position, state.velocity, state.acceleration, state.jerk}) {
-      append(text, v);
+      append_columns(text, v);
     }
-    text += ',';
-    append(text, leg.yaw_at(t_s));
-    text += '\n';
+    append(text, ",{}\n", leg.yaw_at(t_s));
   }
 }
+
+/// A mesh as rows of a PLY file.
+struct PlyRows {
+  std::string vertices;
+  std::string faces;
+  std::size_t vertex_count = 0;
+  std::size_t face_count = 0;
+
+  void add(const visualization::Mesh& mesh, std::size_t leg, std::size_t polytope) {
+    for (const Vec3& p : mesh.corners) append(vertices, "{} {} {}\n", p.x(), p.y(), p.z());
+    for (const auto& face : mesh.faces) {
+      append(faces, "{}", face.size());
+      for (const std::size_t corner : face) append(faces, " {}", vertex_count + corner);
+      append(faces, " {} {}\n", leg, polytope);
+    }
+    vertex_count += mesh.corners.size();
+    face_count += mesh.faces.size();
+  }
+};
 
 }  // namespace
 
@@ -47,12 +61,11 @@ Status write_flown_csv(const Flight& flight, const std::filesystem::path& file) 
   if (auto status = flight.check(); !status) return status;
   std::string text = "t_s,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s,qw,qx,qy,qz\n";
   for (const FlownSample& s : flight.flown) {
-    append(text, s.t_s);
-    append(text, s.position_map);
-    append(text, s.velocity_map);
-    text += ',';
-    append(text, s.q_map_base.w());
-    append(text, Vec3(s.q_map_base.vec()));
+    append(text, "{}", s.t_s);
+    append_columns(text, s.position_map);
+    append_columns(text, s.velocity_map);
+    append(text, ",{}", s.q_map_base.w());
+    append_columns(text, s.q_map_base.vec());
     text += '\n';
   }
   return write_file(file, text);
@@ -81,37 +94,22 @@ Status write_trajectory_csv(const Flight& flight, const std::filesystem::path& f
 
 Status write_corridor_ply(const Flight& flight, const std::filesystem::path& file) {
   if (auto status = flight.check(); !status) return status;
-  std::string vertices;
-  std::string faces;
-  std::size_t vertex_count = 0;
-  std::size_t face_count = 0;
+  PlyRows rows;
   for (std::size_t leg = 0; leg < flight.legs.size(); ++leg) {
-    for (std::size_t k = 0; k < flight.legs[leg].corridor.size(); ++k) {
-      const Mesh mesh = closed_mesh(flight.legs[leg].corridor[k]);
-      for (const Vec3& p : mesh.corners) {
-        append(vertices, p.x());
-        for (int axis = 1; axis < 3; ++axis) append(vertices += ' ', p[axis]);
-        vertices += '\n';
-      }
-      for (const auto& face : mesh.faces) {
-        faces += std::to_string(face.size());
-        for (const std::size_t corner : face) faces += ' ' + std::to_string(vertex_count + corner);
-        faces += ' ' + std::to_string(leg) + ' ' + std::to_string(k) + '\n';
-      }
-      vertex_count += mesh.corners.size();
-      face_count += mesh.faces.size();
+    const auto& corridor = flight.legs[leg].corridor;
+    for (std::size_t k = 0; k < corridor.size(); ++k) {
+      rows.add(visualization::closed_mesh(corridor[k]), leg, k);
     }
   }
-  return write_file(
-      file,
-      "ply\nformat ascii 1.0\ncomment corridor of a Goshawk flight, frame map, metres\n"
-      "element vertex " +
-          std::to_string(vertex_count) +
-          "\nproperty double x\nproperty double y\nproperty double z\nelement face " +
-          std::to_string(face_count) +
-          "\nproperty list uchar int vertex_indices\nproperty int leg\n"
-          "property int polytope\nend_header\n" +
-          vertices + faces);
+  return write_file(file,
+                    fmt::format("ply\nformat ascii 1.0\n"
+                                "comment corridor of a Goshawk flight, frame map, metres\n"
+                                "element vertex {}\n"
+                                "property double x\nproperty double y\nproperty double z\n"
+                                "element face {}\n"
+                                "property list uchar int vertex_indices\n"
+                                "property int leg\nproperty int polytope\nend_header\n{}{}",
+                                rows.vertex_count, rows.face_count, rows.vertices, rows.faces));
 }
 
 }  // namespace goshawk::flight_report

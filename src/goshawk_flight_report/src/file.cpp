@@ -1,5 +1,7 @@
 #include "file.hpp"
 
+#include <fmt/format.h>
+
 #include <fstream>
 
 #include "goshawk/flight_report/draw.hpp"
@@ -10,15 +12,17 @@ namespace goshawk::flight_report {
 Status write_file(const std::filesystem::path& file, const std::string& bytes) {
   std::ofstream out(file, std::ios::binary | std::ios::trunc);
   if (!out) {
-    return fail(ErrorCode::io_failed, "cannot open '" + file.string() +
-                                          "' for writing: check that its folder exists and may be "
-                                          "written to");
+    return fail(ErrorCode::io_failed,
+                fmt::format("cannot open '{}' for writing: check that its folder exists and is "
+                            "writable",
+                            file.string()));
   }
   out.write(bytes.data(), std::streamsize(bytes.size()));
   out.close();  // the last bytes go out here: a full disk shows
   if (out) return success();
-  return fail(ErrorCode::io_failed,
-              "cannot write all of '" + file.string() + "': check that the disk is not full");
+  return fail(
+      ErrorCode::io_failed,
+      fmt::format("cannot write all of '{}': check that the disk is not full", file.string()));
 }
 
 Status write_flight_folder(const Flight& flight, const std::filesystem::path& folder) {

@@ -7,7 +7,7 @@
 
 namespace goshawk::flight_report {
 
-/// @return io_failed, naming the file, where any of the bytes could not be written
+/// @return io_failed, naming the file, if any of the bytes could not be written
 Status write_file(const std::filesystem::path& file, const std::string& bytes);
 
 }  // namespace goshawk::flight_report

@@ -1,5 +1,7 @@
 #include "goshawk/flight_report/flight.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -67,7 +69,7 @@ Status check_leg(const Leg& leg, const std::string& name) {
 Status check_flown(const std::vector<FlownSample>& flown) {
   for (std::size_t i = 0; i < flown.size(); ++i) {
     const FlownSample& s = flown[i];
-    const std::string name = "flown sample " + std::to_string(i);
+    const std::string name = fmt::format("flown sample {}", i);
     if (!std::isfinite(s.t_s) || !usable(s.position_map) || !usable(s.velocity_map) ||
         !s.q_map_base.coeffs().allFinite()) {
       return wrong(name + " has a number that is not finite or beyond 1e6");
@@ -104,7 +106,7 @@ Status Flight::check() const {
   if (auto status = check_flown(flown); !status) return status;
   bool anything = !flown.empty() || obstacles != nullptr || grown != nullptr;
   for (std::size_t i = 0; i < legs.size(); ++i) {
-    if (auto status = check_leg(legs[i], "leg " + std::to_string(i)); !status) return status;
+    if (auto status = check_leg(legs[i], fmt::format("leg {}", i)); !status) return status;
     anything = anything || !empty(legs[i]);
   }
   return anything ? success() : Status(wrong("there is no map, no path and no track in it"));

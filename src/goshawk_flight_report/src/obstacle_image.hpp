@@ -2,9 +2,8 @@
 
 #include <vector>
 
-#include "canvas.hpp"
 #include "goshawk/core/grid_geometry.hpp"
-#include "plot_area.hpp"
+#include "plot.hpp"
 
 namespace goshawk::flight_report {
 

@@ -1,44 +1,22 @@
 #include "goshawk/flight_report/page.hpp"
 
-#include <charconv>
+#include <fmt/format.h>
+
 #include <fstream>
 #include <iterator>
+#include <nlohmann/json.hpp>
 
 #include "file.hpp"
 
 namespace goshawk::flight_report {
 namespace {
 
+// Numbers are written as float: seven digits are enough for a picture, and the page stays small.
+using Json = nlohmann::basic_json<nlohmann::ordered_map, std::vector, std::string, bool,
+                                  std::int64_t, std::uint64_t, float>;
+
 constexpr double kLeastStep_s = 0.02;  // between samples of the track: a page need not weigh more
 constexpr std::string_view kMark = "@FLIGHT@";
-
-void append(std::string& text, double value) {
-  char digits[32];
-  const auto end =
-      std::to_chars(digits, digits + sizeof digits, value, std::chars_format::general, 7).ptr;
-  text.append(digits, end);
-}
-
-void append(std::string& text, const Vec3& v) {
-  for (int axis = 0; axis < 3; ++axis) {
-    if (axis > 0) text += ',';
-    append(text, v[axis]);
-  }
-}
-
-// "<" would let a title end the script element that the JSON stands in.
-std::string quoted(const std::string& raw) {
-  std::string text = "\"";
-  for (const char c : raw) {
-    if (c == '"' || c == '\\') text += '\\';
-    if (c == '<') {
-      text += "\\u003c";
-    } else {
-      text += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-    }
-  }
-  return text + '"';
-}
 
 std::string base64(const std::string& bytes) {
   static constexpr char kDigits[] =
@@ -87,79 +65,51 @@ std::string runs_of(const BitGrid& grid) {
   return bytes;
 }
 
-void append_grid(std::string& text, const char* name, const VoxelGrid* grid) {
-  text += std::string(",\"") + name + "\":";
-  if (grid == nullptr) {
-    text += "null";
-    return;
-  }
+Json to_json(const Vec3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+Json to_json(const std::vector<Vec3>& points) {
+  Json list = Json::array();
+  for (const Vec3& p : points) list.push_back(to_json(p));
+  return list;
+}
+
+Json to_json(const VoxelGrid* grid) {
+  if (grid == nullptr) return nullptr;
   const auto& g = grid->geometry;
-  text += "{\"origin\":[";
-  append(text, g.origin_map);
-  text += "],\"resolution\":";
-  append(text, g.resolution_m);
-  text += ",\"size\":[" + std::to_string(g.size.x) + ',' + std::to_string(g.size.y) + ',' +
-          std::to_string(g.size.z) + "],\"runs\":\"" + base64(runs_of(grid->grown)) + "\"}";
+  return {{"origin", to_json(g.origin_map)},
+          {"resolution", g.resolution_m},
+          {"size", {g.size.x, g.size.y, g.size.z}},
+          {"runs", base64(runs_of(grid->grown))}};
 }
 
-/// Comma-separated elements of a JSON array.
-template <typename Range, typename Write>
-void append_list(std::string& text, const Range& range, Write&& write) {
-  text += '[';
-  bool first = true;
-  for (const auto& element : range) {
-    if (!first) text += ',';
-    first = false;
-    write(element);
+Json to_json(const Polytope& polytope) {
+  Json normals = Json::array(), offsets = Json::array();
+  for (const HalfSpace& face : polytope.half_spaces) {
+    for (int axis = 0; axis < 3; ++axis) normals.push_back(face.normal[axis]);
+    offsets.push_back(face.offset_m);
   }
-  text += ']';
+  return {{"A", normals}, {"b", offsets}};
 }
 
-void append_points(std::string& text, const std::vector<Vec3>& points) {
-  append_list(text, points, [&](const Vec3& p) {
-    text += '[';
-    append(text, p);
-    text += ']';
-  });
-}
-
-void append_polytope(std::string& text, const Polytope& polytope) {
-  text += "{\"A\":[";
-  for (int i = 0; i < polytope.faces(); ++i) {
-    if (i > 0) text += ',';
-    append(text, polytope.half_spaces[std::size_t(i)].normal);
+Json to_json(const BezierPiece& piece) {
+  Json points = Json::array();
+  for (int k = 0; k < piece.control_points.cols(); ++k) {
+    points.push_back(to_json(Vec3(piece.control_points.col(k))));
   }
-  text += "],\"b\":[";
-  for (int i = 0; i < polytope.faces(); ++i) {
-    if (i > 0) text += ',';
-    append(text, polytope.half_spaces[std::size_t(i)].offset_m);
-  }
-  text += "]}";
+  return {{"duration", piece.duration_s}, {"points", points}};
 }
 
-void append_piece(std::string& text, const BezierPiece& piece) {
-  text += "{\"duration\":";
-  append(text, piece.duration_s);
-  text += ",\"points\":";
-  std::vector<Vec3> points;
-  for (int k = 0; k < piece.control_points.cols(); ++k)
-    points.push_back(piece.control_points.col(k));
-  append_points(text, points);
-  text += '}';
-}
-
-void append_leg(std::string& text, const Leg& leg) {
-  text += "{\"start\":";
-  append(text, leg.start_t_s);
-  text += ",\"raw\":";
-  append_points(text, leg.raw_path_map);
-  text += ",\"waypoints\":";
-  append_points(text, leg.waypoints_map);
-  text += ",\"corridor\":";
-  append_list(text, leg.corridor, [&](const Polytope& p) { append_polytope(text, p); });
-  text += ",\"pieces\":";
-  append_list(text, leg.trajectory.pieces, [&](const BezierPiece& p) { append_piece(text, p); });
-  text += '}';
+Json to_json(const Leg& leg) {
+  Json corridor = Json::array(), pieces = Json::array();
+  for (const Polytope& polytope : leg.corridor) corridor.push_back(to_json(polytope));
+  for (const BezierPiece& piece : leg.trajectory.pieces) pieces.push_back(to_json(piece));
+  return {{"start", leg.start_t_s},
+          {"raw", to_json(leg.raw_path_map)},
+          {"waypoints", to_json(leg.waypoints_map)},
+          {"corridor", corridor},
+          {"pieces", pieces}};
 }
 
 std::vector<FlownSample> thinned(const std::vector<FlownSample>& flown) {
@@ -172,38 +122,48 @@ std::vector<FlownSample> thinned(const std::vector<FlownSample>& flown) {
   return kept;
 }
 
-void append_flown(std::string& text, const std::vector<FlownSample>& flown) {
-  const auto samples = thinned(flown);
-  text += ",\"flown\":{\"t\":";
-  append_list(text, samples, [&](const FlownSample& s) { append(text, s.t_s); });
-  text += ",\"p\":";
-  append_list(text, samples, [&](const FlownSample& s) { append(text, s.position_map); });
-  text += ",\"v\":";
-  append_list(text, samples, [&](const FlownSample& s) { append(text, s.velocity_map); });
-  text += ",\"q\":";
-  append_list(text, samples, [&](const FlownSample& s) {
-    append(text, s.q_map_base.w());
-    text += ',';
-    append(text, Vec3(s.q_map_base.vec()));
-  });
-  text += '}';
+/// Columns of numbers, one after another: what the page reads fastest.
+Json to_json(const std::vector<FlownSample>& flown) {
+  Json t = Json::array(), p = Json::array(), v = Json::array(), q = Json::array();
+  const auto append = [](Json& column, const Vec3& vector) {
+    for (int axis = 0; axis < 3; ++axis) column.push_back(vector[axis]);
+  };
+  for (const FlownSample& s : thinned(flown)) {
+    t.push_back(s.t_s);
+    append(p, s.position_map);
+    append(v, s.velocity_map);
+    q.push_back(s.q_map_base.w());
+    append(q, s.q_map_base.vec());
+  }
+  return {{"t", t}, {"p", p}, {"v", v}, {"q", q}};
 }
 
-std::string flight_json(const Flight& flight, const std::string& summary_json) {
-  std::string text = "{\"title\":" + quoted(flight.title) + ",\"body_radius\":";
-  append(text, flight.body_radius_m);
-  text += ",\"limits\":{\"v_max\":";
-  append(text, flight.limits.v_max_m_s);
-  text += ",\"a_max\":";
-  append(text, flight.limits.a_max_m_s2);
-  text += "},\"legs\":";
-  append_list(text, flight.legs, [&](const Leg& leg) { append_leg(text, leg); });
-  append_flown(text, flight.flown);
-  append_grid(text, "obstacles", flight.obstacles);
-  append_grid(text, "grown", flight.grown);
-  text += ",\"summary\":";
-  for (const char c : summary_json) text += c == '<' ? std::string("\\u003c") : std::string(1, c);
-  return text + '}';
+Result<std::string> flight_json(const Flight& flight, const std::string& summary_json) {
+  const Json summary = Json::parse(summary_json, nullptr, false);
+  if (summary.is_discarded()) {
+    return fail(ErrorCode::invalid_input, "the flight's summary is not JSON");
+  }
+  Json legs = Json::array();
+  for (const Leg& leg : flight.legs) legs.push_back(to_json(leg));
+  const Json json{
+      {"title", flight.title},
+      {"body_radius", flight.body_radius_m},
+      {"limits", {{"v_max", flight.limits.v_max_m_s}, {"a_max", flight.limits.a_max_m_s2}}},
+      {"legs", legs},
+      {"flown", to_json(flight.flown)},
+      {"obstacles", to_json(flight.obstacles)},
+      {"grown", to_json(flight.grown)},
+      {"summary", summary}};
+  // "<" could end the script element that the JSON stands in.
+  std::string text;
+  for (const char c : json.dump(-1, ' ', false, Json::error_handler_t::replace)) {
+    if (c == '<') {
+      text += "\\u003c";
+    } else {
+      text += c;
+    }
+  }
+  return text;
 }
 
 }  // namespace
@@ -216,10 +176,12 @@ Status write_flight_page(const Flight& flight, const std::filesystem::path& page
   const std::size_t mark = page.find(kMark);
   if (!in || mark == std::string::npos) {
     return fail(ErrorCode::io_failed,
-                page_template.string() + " is no page template: is goshawk_viewer installed?");
+                fmt::format("'{}' is not a page template: is goshawk_viewer installed?",
+                            page_template.string()));
   }
-  return write_file(file, page.substr(0, mark) + flight_json(flight, summary_json) +
-                              page.substr(mark + kMark.size()));
+  const auto json = flight_json(flight, summary_json);
+  if (!json) return json.error();
+  return write_file(file, page.substr(0, mark) + *json + page.substr(mark + kMark.size()));
 }
 
 }  // namespace goshawk::flight_report

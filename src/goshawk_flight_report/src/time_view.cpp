@@ -1,14 +1,15 @@
 // The picture against time.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 #include <optional>
 
-#include "canvas.hpp"
 #include "goshawk/flight_report/draw.hpp"
-#include "plot_area.hpp"
+#include "plot.hpp"
+#include "style.hpp"
 
 namespace goshawk::flight_report {
 
@@ -21,20 +22,15 @@ constexpr int kPanels = 4;
 
 constexpr std::array<Color, 3> kAxes{{{0.84, 0.37, 0.0}, {0.0, 0.62, 0.45}, {0.0, 0.45, 0.70}}};
 constexpr Color kPlanned{0.16, 0.40, 0.70};
-constexpr Color kFlown{0.05, 0.05, 0.05};
-constexpr Color kLimit{0.80, 0.12, 0.12};
-constexpr Color kJoint{0.0, 0.0, 0.0, 0.25};
+constexpr Stroke kAsPlanned{kPlanned, 2.0};
+constexpr Stroke kAsFlown{kFlown, 1.2, 5.0};
+constexpr Stroke kLimit{{0.80, 0.12, 0.12}, 1.4};
+constexpr Stroke kLegBorder{{0.0, 0.0, 0.0, 0.25}, 1.0, 3.0};
 
 struct Curve {
-  std::string name;
+  std::string name;  // empty: not in the legend
   Stroke stroke;
   std::vector<Vec2> points;  // t [s], value
-};
-
-/// Planned states at even times over the whole flight, on the flight's clock.
-struct Timed {
-  double t_s;
-  FlatState state;
 };
 
 Interval time_span(const Flight& flight) {
@@ -49,25 +45,15 @@ Interval time_span(const Flight& flight) {
   return span;
 }
 
-std::vector<Timed> planned(const Flight& flight, const Interval& span) {
+/// @param value of the planned state @return it at even times over the whole flight
+std::vector<Vec2> of_planned(const Flight& flight, const Interval& span,
+                             const std::function<double(const FlatState&)>& value) {
   constexpr int kSteps = 3000;
-  std::vector<Timed> states;
+  std::vector<Vec2> points;
   for (int k = 0; k <= kSteps; ++k) {
     const double t_s = span.lo + span.length() * k / kSteps;
-    if (const auto state = flight.planned_at(t_s)) states.push_back({t_s, *state});
+    if (const auto state = flight.planned_at(t_s)) points.emplace_back(t_s, value(*state));
   }
-  return states;
-}
-
-/// What a limit bounds.
-double size_of(const Vec3& v, LimitNorm norm) {
-  return norm == LimitNorm::euclidean ? v.norm() : v.cwiseAbs().maxCoeff();
-}
-
-std::vector<Vec2> of_planned(const std::vector<Timed>& states,
-                             const std::function<double(const FlatState&)>& value) {
-  std::vector<Vec2> points;
-  for (const Timed& s : states) points.emplace_back(s.t_s, value(s.state));
   return points;
 }
 
@@ -76,6 +62,11 @@ std::vector<Vec2> of_flown(const Flight& flight,
   std::vector<Vec2> points;
   for (const FlownSample& s : flight.flown) points.emplace_back(s.t_s, value(s));
   return points;
+}
+
+/// What a limit bounds.
+double size_of(const Vec3& v, LimitNorm norm) {
+  return norm == LimitNorm::euclidean ? v.norm() : v.cwiseAbs().maxCoeff();
 }
 
 /// Differences of the flown velocity over 0.1 s or so: shorter ones show noise only.
@@ -103,147 +94,104 @@ std::vector<Vec2> tracking_error_mm(const Flight& flight) {
   return points;
 }
 
+/// Room for the curves and the limit; from zero where that does not squeeze them.
+Interval values(const std::vector<Curve>& curves, std::optional<double> limit) {
+  Interval v{1e300, -1e300};
+  for (const Curve& curve : curves) {
+    for (const Vec2& p : curve.points) v.include(p.y());
+  }
+  if (limit) v.include(*limit);
+  if (v.lo > v.hi) v = {0.0, 1.0};
+  if (v.lo >= 0.0 && (limit || v.lo < 0.5 * v.hi)) v.lo = 0.0;
+  if (v.length() < 1e-9) v = {v.lo - 0.5, v.hi + 0.5};
+  v.hi += 0.08 * v.length();
+  if (v.lo != 0.0) v.lo -= 0.05 * v.length();
+  return v;
+}
+
 class TimePicture {
  public:
   explicit TimePicture(const Flight& flight)
       : flight_(flight),
         span_(time_span(flight)),
-        canvas_(kWidth_px,
-                int(kTop_px + kPanels * kPanel_px + (kPanels - 1) * kGap_px + kBottom_px)) {}
-
-  Status draw(const std::filesystem::path& png) {
-    const auto states = planned(flight_, span_);
-    canvas_.text({kLeft_px, 30.0}, flight_.title,
-                 {.size_px = 20.0, .color = {0.1, 0.1, 0.12}, .bold = true});
-    panel("position [m]", positions(states), std::nullopt);
-    const LimitNorm norm = flight_.limits.norm;
+        sheet_(kWidth_px,
+               int(kTop_px + kPanels * kPanel_px + (kPanels - 1) * kGap_px + kBottom_px)) {
+    sheet_.text({kLeft_px, 30.0}, flight.title, kTitle);
+    panel("position [m]", positions(), std::nullopt);
+    const LimitNorm norm = flight.limits.norm;
     const bool whole = norm == LimitNorm::euclidean;
+    const auto speed = [norm](const FlatState& s) { return size_of(s.velocity, norm); };
+    const auto flown_speed = [norm](const FlownSample& s) { return size_of(s.velocity_map, norm); };
+    const auto acceleration = [norm](const FlatState& s) { return size_of(s.acceleration, norm); };
     panel(whole ? "speed [m/s]" : "fastest axis [m/s]",
-          {{"planned",
-            {kPlanned, 2.0},
-            of_planned(states, [norm](const FlatState& s) { return size_of(s.velocity, norm); })},
-           {"flown",
-            {kFlown, 1.2, 5.0},
-            of_flown(flight_,
-                     [norm](const FlownSample& s) { return size_of(s.velocity_map, norm); })}},
-          flight_.limits.v_max_m_s);
-    panel(
-        whole ? "acceleration [m/s\u00b2]" : "largest axis [m/s\u00b2]",
-        {{"planned",
-          {kPlanned, 2.0},
-          of_planned(states, [norm](const FlatState& s) { return size_of(s.acceleration, norm); })},
-         {"flown", {kFlown, 1.2, 5.0}, flown_acceleration(flight_)}},
-        flight_.limits.a_max_m_s2);
-    panel("tracking error [mm]", {{"distance", {kPlanned, 1.6}, tracking_error_mm(flight_)}},
-          std::nullopt);
-    return canvas_.save(png);
+          {{"planned", kAsPlanned, of_planned(flight, span_, speed)},
+           {"flown", kAsFlown, of_flown(flight, flown_speed)}},
+          flight.limits.v_max_m_s);
+    panel(whole ? "acceleration [m/s\u00b2]" : "largest axis [m/s\u00b2]",
+          {{"planned", kAsPlanned, of_planned(flight, span_, acceleration)},
+           {"flown", kAsFlown, flown_acceleration(flight)}},
+          flight.limits.a_max_m_s2);
+    const auto errors_mm = tracking_error_mm(flight);
+    Plot plot = panel("tracking error [mm]", {{"distance", {kPlanned, 1.6}, errors_mm}}, {});
+    summarize(plot, errors_mm);
   }
 
+  Status save(const std::filesystem::path& png) const { return sheet_.save(png); }
+
  private:
-  std::vector<Curve> positions(const std::vector<Timed>& states) const {
+  std::vector<Curve> positions() const {
     std::vector<Curve> curves;
     for (int axis = 0; axis < 3; ++axis) {
-      const std::string name(1, "xyz"[axis]);
-      const Color& color = kAxes[std::size_t(axis)];
       curves.push_back(
-          {name + " planned", {color, 2.0}, of_planned(states, [axis](const FlatState& s) {
-             return s.position[axis];
-           })});
+          {fmt::format("{} planned", "xyz"[axis]),
+           {kAxes[std::size_t(axis)], 2.0},
+           of_planned(flight_, span_, [axis](const FlatState& s) { return s.position[axis]; })});
     }
     for (int axis = 0; axis < 3; ++axis) {
-      curves.push_back(
-          {axis == 0 ? "flown" : "",
-           {kFlown, 1.2, 5.0},
-           of_flown(flight_, [axis](const FlownSample& s) { return s.position_map[axis]; })});
+      const auto position = [axis](const FlownSample& s) { return s.position_map[axis]; };
+      curves.push_back({axis == 0 ? "flown" : "", kAsFlown, of_flown(flight_, position)});
     }
     return curves;
   }
 
-  PlotArea area_for(const std::vector<Curve>& curves, std::optional<double> limit) const {
-    Interval v{1e300, -1e300};
-    for (const Curve& curve : curves) {
-      for (const Vec2& p : curve.points) v.include(p.y());
-    }
-    if (limit) v.include(*limit);
-    if (v.lo > v.hi) v = {0.0, 1.0};
-    if (v.lo >= 0.0 && (limit || v.lo < 0.5 * v.hi)) v.lo = 0.0;
-    if (v.length() < 1e-9) v = {v.lo - 0.5, v.hi + 0.5};
-    v.hi += 0.08 * v.length();
-    if (v.lo != 0.0) v.lo -= 0.05 * v.length();
-    const double top = kTop_px + drawn_ * (kPanel_px + kGap_px);
-    return {{kLeft_px, top, kWidth_px - kLeft_px - kLegend_px, kPanel_px}, span_, v};
-  }
-
-  void panel(const std::string& label, const std::vector<Curve>& curves,
+  Plot panel(const std::string& label, const std::vector<Curve>& curves,
              std::optional<double> limit) {
-    const PlotArea area = area_for(curves, limit);
+    const double top = kTop_px + drawn_ * (kPanel_px + kGap_px);
     const bool last = ++drawn_ == kPanels;
-    draw_axes(canvas_, area, {last ? "time [s]" : "", label, last});
-    canvas_.clip(area.place);
+    Plot plot(sheet_, {kLeft_px, top}, {kWidth_px - kLeft_px - kLegend_px, kPanel_px}, span_,
+              values(curves, limit));
+    plot.axes(last ? "time [s]" : "", label);
     for (const Leg& leg : flight_.legs) {
       if (leg.trajectory.pieces.empty()) continue;
-      vertical(area, leg.start_t_s);
-      vertical(area, leg.start_t_s + leg.trajectory.duration_s());
+      for (const double t_s : {leg.start_t_s, leg.start_t_s + leg.trajectory.duration_s()}) {
+        plot.line({{t_s, plot.v().lo}, {t_s, plot.v().hi}}, kLegBorder);
+      }
     }
-    if (limit) horizontal(area, *limit);
+    if (limit) plot.line({{span_.lo, *limit}, {span_.hi, *limit}}, kLimit);
     for (const Curve& curve : curves) {
-      std::vector<Vec2> line;
-      for (const Vec2& p : curve.points) line.push_back(area.pixel(p.x(), p.y()));
-      canvas_.polyline(line, curve.stroke);
+      plot.line(curve.points, curve.stroke);
+      if (!curve.name.empty() && curve.points.size() > 1) {
+        plot.explain_line(curve.name, curve.stroke);
+      }
     }
-    canvas_.unclip();
-    legend(area, curves, limit);
+    if (limit) plot.explain_line(fmt::format("limit {:.4g}", *limit), kLimit);
+    return plot;
   }
 
-  void vertical(const PlotArea& area, double t_s) {
-    canvas_.polyline(std::array{area.pixel(t_s, area.v.lo), area.pixel(t_s, area.v.hi)},
-                     {kJoint, 1.0, 3.0});
-  }
-  void horizontal(const PlotArea& area, double value) {
-    canvas_.polyline(std::array{area.pixel(area.u.lo, value), area.pixel(area.u.hi, value)},
-                     {kLimit, 1.4});
-  }
-
-  void legend(const PlotArea& area, const std::vector<Curve>& curves, std::optional<double> limit) {
-    const double x = area.place.left + area.place.width + 16.0;
-    double y = area.place.top + 12.0;
-    const auto entry = [&](const std::string& name, const Stroke& stroke) {
-      canvas_.polyline(std::array{Vec2(x, y), Vec2(x + 28.0, y)}, stroke);
-      canvas_.text({x + 36.0, y}, name, {});
-      y += 22.0;
-    };
-    for (const Curve& curve : curves) {
-      if (!curve.name.empty() && curve.points.size() > 1) entry(curve.name, curve.stroke);
-    }
-    if (limit) {
-      char text[40];
-      std::snprintf(text, sizeof text, "limit %.4g", *limit);
-      entry(text, {kLimit, 1.4});
-    } else if (drawn_ == kPanels) {
-      error_summary(curves.front().points, {x, y + 4.0});
-    }
-  }
-
-  void error_summary(const std::vector<Vec2>& errors_mm, const Vec2& at) {
-    if (errors_mm.empty()) {
-      canvas_.text(at, "nothing to compare", {});
-      return;
-    }
+  static void summarize(Plot& plot, const std::vector<Vec2>& errors_mm) {
+    if (errors_mm.empty()) return plot.note("nothing to compare");
     double squares = 0.0, largest = 0.0;
     for (const Vec2& p : errors_mm) {
       squares += p.y() * p.y();
       largest = std::max(largest, p.y());
     }
-    char text[64];
-    std::snprintf(text, sizeof text, "rms %.1f mm", std::sqrt(squares / double(errors_mm.size())));
-    canvas_.text(at, text, {});
-    std::snprintf(text, sizeof text, "largest %.1f mm", largest);
-    canvas_.text(at + Vec2(0.0, 22.0), text, {});
+    plot.note(fmt::format("rms {:.1f} mm", std::sqrt(squares / double(errors_mm.size()))));
+    plot.note(fmt::format("largest {:.1f} mm", largest));
   }
 
   const Flight& flight_;
   Interval span_;
-  Canvas canvas_;
+  Sheet sheet_;
   int drawn_ = 0;
 };
 
@@ -251,9 +199,10 @@ class TimePicture {
 
 Status draw_time(const Flight& flight, const std::filesystem::path& png) {
   if (auto status = flight.check(); !status) return status;
-  bool timed = !flight.flown.empty();
-  for (const Leg& leg : flight.legs) timed = timed || !leg.trajectory.pieces.empty();
-  if (timed) return TimePicture(flight).draw(png);
+  const bool timed = !flight.flown.empty() || std::ranges::any_of(flight.legs, [](const Leg& leg) {
+    return !leg.trajectory.pieces.empty();
+  });
+  if (timed) return TimePicture(flight).save(png);
   return fail(ErrorCode::invalid_input,
               "the flight has neither a trajectory nor a flown track to draw against time");
 }

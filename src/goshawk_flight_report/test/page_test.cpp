@@ -39,8 +39,9 @@ TEST_F(Page, HoldsTheFlightInPlaceOfTheMark) {
   ASSERT_TRUE(write_flight_page(flight, page(), file(), "{\"verdict\":\"<safe>\"}"));
   EXPECT_EQ(text(),
             "<before>{\"title\":\"A \\\"flight\\\" \\u003c/script>\",\"body_radius\":0.15,"
-            "\"limits\":{\"v_max\":2,\"a_max\":2},\"legs\":[],\"flown\":{\"t\":[0,0.02],"
-            "\"p\":[1,2,3,1.25,2,3],\"v\":[0.5,0,0,0.5,0,0],\"q\":[1,0,0,0,1,0,0,0]},"
+            "\"limits\":{\"v_max\":2.0,\"a_max\":2.0},\"legs\":[],\"flown\":{\"t\":[0.0,0.02],"
+            "\"p\":[1.0,2.0,3.0,1.25,2.0,3.0],\"v\":[0.5,0.0,0.0,0.5,0.0,0.0],"
+            "\"q\":[1.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0]},"
             "\"obstacles\":null,\"grown\":null,\"summary\":{\"verdict\":\"\\u003csafe>\"}}<after>");
 }
 
@@ -54,9 +55,10 @@ TEST_F(Page, WritesTheMapAsRuns) {
   flight.obstacles = &grid;
   ASSERT_TRUE(write_flight_page(flight, page(), file()));
   // Two free, two occupied, two free: bytes 2 2 2.
-  EXPECT_NE(text().find("\"obstacles\":{\"origin\":[0,0,0],\"resolution\":0.5,\"size\":[3,2,1],"
-                        "\"runs\":\"AgIC\"}"),
-            std::string::npos)
+  EXPECT_NE(
+      text().find("\"obstacles\":{\"origin\":[0.0,0.0,0.0],\"resolution\":0.5,\"size\":[3,2,1],"
+                  "\"runs\":\"AgIC\"}"),
+      std::string::npos)
       << text();
 }
 
@@ -67,6 +69,7 @@ TEST_F(Page, SaysWhatIsWrong) {
   EXPECT_EQ(write_flight_page(flight, folder_ / "none.html", file()).code(), ErrorCode::io_failed);
   std::ofstream(folder_ / "other.html") << "no mark";
   EXPECT_EQ(write_flight_page(flight, folder_ / "other.html", file()).code(), ErrorCode::io_failed);
+  EXPECT_EQ(write_flight_page(flight, page(), file(), "{").code(), ErrorCode::invalid_input);
   EXPECT_EQ(write_flight_page(flight, page(), "/dev/full").code(), ErrorCode::io_failed);
   EXPECT_EQ(write_flight_page(flight, page(), folder_ / "no" / "x").code(), ErrorCode::io_failed);
 }

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -37,8 +39,8 @@ class Decoder {
 
   std::size_t left() const { return payload_.size() - at_; }
   Error error(const Type& type) const {
-    return fail(ErrorCode::invalid_input, "these bytes are no " + std::string(type.name) + ": " +
-                                              path_ + (path_.empty() ? "" : " ") + fault_);
+    return fail(ErrorCode::invalid_input, "these bytes are not a valid " + std::string(type.name) +
+                                              ": " + path_ + (path_.empty() ? "" : " ") + fault_);
   }
   void set_fault(std::string fault) { fault_ = std::move(fault); }
 
@@ -48,11 +50,11 @@ class Decoder {
     std::uint32_t count = field.size;
     if (field.arity == Arity::sequence && !read_count(field, count)) return false;
     out = Json::array();
-    out.get_ref<Json::array_t&>().reserve(count);  // read_count made sure that they can be there
+    out.get_ref<Json::array_t&>().reserve(count);  // read_count has checked that they fit
     for (std::uint32_t i = 0; i < count; ++i) {
       Json element;
       if (!read_one(field, element)) {
-        path_ = "[" + std::to_string(i) + "]" + (path_.empty() ? "" : ".") + path_;
+        path_ = fmt::format("[{}]{}{}", i, path_.empty() ? "" : ".", path_);
         return false;
       }
       out.push_back(std::move(element));
@@ -66,8 +68,7 @@ class Decoder {
                                     ? all_types()[std::size_t(field.type)].least_size
                                     : size_of(field.kind);
     if (count <= left() / least) return true;
-    fault_ = "claims " + std::to_string(count) + " elements, but only " + std::to_string(left()) +
-             " bytes are left";
+    fault_ = fmt::format("claims {} elements, but only {} bytes are left", count, left());
     return false;
   }
 
@@ -107,7 +108,7 @@ class Decoder {
   bool primitive(T& value) {
     const std::size_t aligned = (at_ + sizeof(T) - 1) / sizeof(T) * sizeof(T);
     if (aligned > payload_.size() || payload_.size() - aligned < sizeof(T)) {
-      fault_ = "is cut off: the message ends after " + std::to_string(payload_.size()) + " bytes";
+      fault_ = fmt::format("is cut off: the message ends after {} bytes", payload_.size());
       return false;
     }
     unsigned char raw[sizeof(T)];
@@ -139,7 +140,7 @@ class Decoder {
     std::uint8_t value;
     if (!primitive(value)) return false;
     if (value > 1) {
-      fault_ = "is a bool of value " + std::to_string(value) + ": it must be 0 or 1";
+      fault_ = fmt::format("is a bool of value {}: it must be 0 or 1", value);
       return false;
     }
     out = value == 1;
@@ -151,8 +152,7 @@ class Decoder {
     std::uint32_t length;
     if (!primitive(length)) return false;
     if (length > left()) {
-      fault_ = "claims " + std::to_string(length) + " characters, but only " +
-               std::to_string(left()) + " bytes are left";
+      fault_ = fmt::format("claims {} characters, but only {} bytes are left", length, left());
       return false;
     }
     const char* text = reinterpret_cast<const char*>(payload_.data() + at_);
@@ -169,7 +169,7 @@ class Decoder {
   std::string fault_;  // empty: none
 };
 
-// @return whether the payload is big-endian; none where it is not plain XCDR1
+// @return whether the payload is big-endian; nothing if it is not plain XCDR1
 std::optional<bool> byte_order(Bytes bytes) {
   if (bytes.size() < kEncapsulation || bytes[0] != 0 || bytes[1] > 1) return std::nullopt;
   return bytes[1] == 0;
@@ -180,15 +180,17 @@ std::optional<bool> byte_order(Bytes bytes) {
 Result<Json> cdr_to_json(const Type& type, Bytes bytes) {
   const auto big_endian = byte_order(bytes);
   if (!big_endian) {
-    return fail(ErrorCode::invalid_input,
-                "these bytes are no " + std::string(type.name) +
-                    ": they do not begin with the encapsulation of plain CDR (0, 0 or 1, 0, 0)");
+    return fail(
+        ErrorCode::invalid_input,
+        fmt::format("these bytes are not a valid {}: they do not begin with the encapsulation "
+                    "of plain CDR (0, 0 or 1, 0, 0)",
+                    type.name));
   }
   Decoder decoder(bytes.subspan(kEncapsulation), *big_endian);
   Json json;
   if (!decoder.read(type, json)) return decoder.error(type);
   if (decoder.left() > kMostPadding) {
-    decoder.set_fault(std::to_string(decoder.left()) + " bytes are left over");
+    decoder.set_fault(fmt::format("{} bytes are left over", decoder.left()));
     return decoder.error(type);
   }
   return json;

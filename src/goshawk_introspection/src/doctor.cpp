@@ -12,13 +12,13 @@
 namespace goshawk::introspection {
 namespace {
 
-constexpr std::size_t kStamps = 20;  // messages whose age is looked at
+constexpr std::size_t kStamps = 20;  // messages whose age is measured
 
 void add(std::vector<Finding>& all, std::vector<Finding> more) {
   std::ranges::move(more, std::back_inserter(all));
 }
 
-// Who is here; and where nobody is, in which other domains of this machine somebody is.
+// Lists the nodes of the domain or, if there are none, other domains in use on this machine.
 Finding company(const std::vector<runtime::ParticipantInfo>& participants, int domain) {
   if (!participants.empty()) {
     std::string nodes;
@@ -36,18 +36,18 @@ Finding company(const std::vector<runtime::ParticipantInfo>& participants, int d
     if (d != domain) others += (others.empty() ? "" : ", ") + std::to_string(d);
   }
   return {"domain " + std::to_string(domain), Level::note,
-          others.empty() ? "nobody is here, nor in another domain of this machine"
-                         : "nobody is here, but there is in " + others,
-          "what is not in this domain is neither seen nor heard",
+          others.empty() ? "no node is in this domain, nor in another one of this machine"
+                         : "no node is in this domain, but there are nodes in " + others,
+          "nodes of other domains cannot be reached",
           others.empty() ? "start something: goshawk launch flight"
-                         : "set ROS_DOMAIN_ID to look there"};
+                         : "set ROS_DOMAIN_ID to that domain"};
 }
 
-// How old odometry is when it comes: clocks of two machines that differ show in it.
+// The age of odometry on arrival shows whether the clocks of two machines differ.
 std::vector<Finding> check_odometry(Session& session, double timeout_s) {
   const auto endpoints = session.context().endpoints();
   const auto has = [&](const auto& wanted) { return std::ranges::any_of(endpoints, wanted); };
-  // Simulated time is no clock of a machine.
+  // Simulated time says nothing about a machine's clock.
   if (has([](const auto& e) { return e.writer && e.topic == "/clock"; })) return {};
   std::map<std::string, std::vector<double>> ages_s;
   for (const auto& e : endpoints) {

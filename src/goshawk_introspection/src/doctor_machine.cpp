@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <ifaddrs.h>
 #include <net/if.h>
 #include <sys/resource.h>
@@ -23,9 +24,9 @@ constexpr double kNoDisk = 0.1;     // [GiB]
 
 Finding check_cores() {
   const unsigned cores = std::thread::hardware_concurrency();
-  if (cores >= 2) return {"processor", Level::fine, std::to_string(cores) + " cores"};
+  if (cores >= 2) return {"processor", Level::fine, fmt::format("{} cores", cores)};
   return {"processor", Level::warning, "one core",
-          "seven stages share it, and each hand-over between them waits for a turn",
+          "seven stages share it, so every message waits until the next stage runs",
           "prefer one process: goshawk launch flight_container"};
 }
 
@@ -33,7 +34,8 @@ Finding check_loopback() {
   ifaddrs* list = nullptr;
   if (getifaddrs(&list) != 0) {
     return {"loopback", Level::fault, "interfaces cannot be listed",
-            "nothing can be said of the way between the stages", "ask who runs this machine"};
+            "the connection between the stages cannot be checked",
+            "ask the machine's administrator"};
   }
   bool up = false;
   for (const ifaddrs* i = list; i != nullptr; i = i->ifa_next) {
@@ -41,7 +43,7 @@ Finding check_loopback() {
   }
   freeifaddrs(list);
   if (up) return {"loopback", Level::fine, "is up"};
-  return {"loopback", Level::fault, "is down", "the stages of one machine talk over it",
+  return {"loopback", Level::fault, "is down", "stages on one machine communicate over it",
           "ip link set lo up"};
 }
 
@@ -49,12 +51,12 @@ Finding check_buffer(const std::string& name) {
   const std::string about = "net.core." + name;
   long most = 0;
   if (!(std::ifstream("/proc/sys/net/core/" + name) >> most)) {
-    return {about, Level::note, "cannot be read here", "whole maps come late where it is small",
-            "sysctl " + about + " outside shows it"};
+    return {about, Level::note, "cannot be read here", "whole maps are delayed if it is small",
+            "sysctl " + about + " outside the container shows it"};
   }
   if (most >= kSocketBuffer) return {about, Level::fine, std::to_string(most) + " byte"};
   return {about, Level::warning, std::to_string(most) + " byte",
-          "whole maps of millions of voxels come late, or in several tries",
+          "maps of millions of voxels are delayed or sent several times",
           "sysctl -w " + about + "=" + std::to_string(kSocketBuffer)};
 }
 
@@ -63,7 +65,7 @@ Finding check_shared_memory() {
   if (statvfs("/dev/shm", &info) != 0 || access("/dev/shm", W_OK) != 0) {
     return {"shared memory", Level::note, "/dev/shm is not writable",
             "a profile file that uses shared memory will not work; loopback, the default, does",
-            "mount a tmpfs there, or give the container one (docker run --shm-size 256m)"};
+            "mount a tmpfs there, or run the container with --shm-size 256m"};
   }
   int left = 0;
   std::error_code ignored;
@@ -71,31 +73,31 @@ Finding check_shared_memory() {
     left += entry.path().filename().string().starts_with("fastrtps_") ? 1 : 0;
   }
   const double free_bytes = double(info.f_bavail) * double(info.f_frsize);
-  const std::string files = left == 0 ? "" : ", " + std::to_string(left) + " segments of Fast DDS";
+  const std::string files = left == 0 ? "" : fmt::format(", {} segments of Fast DDS", left);
   if (free_bytes < kLeastSharedMemory) {
     return {"shared memory", Level::warning, "/dev/shm is nearly full" + files,
-            "a profile file that uses shared memory fails where there is none left",
-            "fastdds shm clean removes what no process uses"};
+            "a profile file that uses shared memory fails when it is full",
+            "fastdds shm clean removes unused segments"};
   }
   return {"shared memory", Level::fine,
           std::to_string(long(free_bytes / (1 << 20))) + " MiB free" + files};
 }
 
-// Where recordings and flight folders are written unless told otherwise.
+// The default folder of recordings and flight folders.
 Finding check_disk() {
   struct statvfs info {};
   if (statvfs(".", &info) != 0) {
-    return {"disk", Level::note, "this folder cannot be looked at", "recordings go here by default",
-            "work in a folder that you may write to"};
+    return {"disk", Level::note, "this folder cannot be examined",
+            "recordings are written here by default", "work in a folder that you may write to"};
   }
   const double free_gib = double(info.f_bavail) * double(info.f_frsize) / kGiB;
   char text[64];
   std::snprintf(text, sizeof text, "%.1f GiB free here", free_gib);
-  const char* why = "a recording stops where the disk is full; what was written stays readable";
-  const char* mend = "make room, or record elsewhere: goshawk record -o FILE, fly --output FOLDER";
+  const char* why = "a recording stops when the disk is full; it stays readable up to there";
+  const char* mend = "free space, or write elsewhere: goshawk record -o FILE, fly --output FOLDER";
   if (access(".", W_OK) != 0) {
     return {"disk", Level::warning, "this folder is not writable",
-            "recordings and flight folders go here by default", mend};
+            "recordings and flight folders are written here by default", mend};
   }
   if (free_gib >= kLeastDisk) return {"disk", Level::fine, text};
   return {"disk", free_gib < kNoDisk ? Level::fault : Level::warning, text, why, mend};
@@ -118,8 +120,8 @@ Finding check_profile() {
   std::stringstream text;
   text << std::ifstream(path).rdbuf();
   const std::string name = path, xml = text.str();
-  const char* why = "it decides alone about transports, and Goshawk's own choice is off";
-  const char* mend = "mend FASTRTPS_DEFAULT_PROFILES_FILE, or unset it";
+  const char* why = "it decides about transports instead of Goshawk";
+  const char* mend = "correct FASTRTPS_DEFAULT_PROFILES_FILE, or unset it";
   const auto first = xml.find_first_not_of(" \t\r\n");
   if (first == std::string::npos) {
     return {"profile file", Level::fault, name + " cannot be read, or is empty", why, mend};
@@ -130,10 +132,11 @@ Finding check_profile() {
   if (xml.find("is_default_profile=\"true\"") == std::string::npos) {
     return {"profile file", Level::warning, name + " has no profile with is_default_profile=true",
             "participants then use Fast DDS' defaults: multicast, on every interface",
-            "mark the participant's profile so"};
+            "add that attribute to the participant's profile"};
   }
   return {"profile file", Level::note, name + " decides about transports",
-          "Goshawk's own choice, UDP on GOSHAWK_INTERFACES, is off", "unset it to have that back"};
+          "Goshawk's own choice, UDP on GOSHAWK_INTERFACES, does not apply",
+          "unset it to restore that choice"};
 }
 
 }  // namespace
@@ -163,7 +166,7 @@ std::vector<Finding> check_environment() {
   const auto options = runtime::ContextOptions::from_environment();
   if (options) {
     findings.push_back(
-        {"domain", Level::fine, std::to_string(options->domain) + " on " + options->interfaces});
+        {"domain", Level::fine, fmt::format("{} on {}", options->domain, options->interfaces)});
   } else {
     findings.push_back({"domain", Level::fault, options.error().message, "no process can join it",
                         "set it to a number from 0 to 232, or unset it"});

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <charconv>
@@ -16,7 +17,7 @@ namespace {
 constexpr int kBase = 7400;
 constexpr int kPerDomain = 250;
 constexpr int kFirst = 10;
-constexpr int kLast = 10 + 2 * 60;  // runtime's Context knocks at so many
+constexpr int kLast = 10 + 2 * 60;  // runtime's Context looks for this many participants
 
 constexpr int kBridgePort = 8765;  // of viewer_bridge, and of the page
 constexpr int kPagePort = 8080;
@@ -27,9 +28,9 @@ std::string content_of(const char* path) {
   return text.str();
 }
 
-// The program that holds a socket, where this user may know it.
+// The program that holds a socket, if this user may see it.
 std::string holder_of(long inode) {
-  const std::string wanted = "socket:[" + std::to_string(inode) + "]";
+  const std::string wanted = fmt::format("socket:[{}]", inode);
   std::error_code ignored;
   for (const auto& process : std::filesystem::directory_iterator("/proc", ignored)) {
     const std::string pid = process.path().filename().string();
@@ -51,7 +52,7 @@ Finding check_viewer_port(const std::map<int, long>& listening, int port, const 
   const auto found = listening.find(port);
   if (found == listening.end()) return {about, Level::fine, "is free for " + who};
   return {about, Level::note, "is held by " + holder_of(found->second),
-          who + " listens there unless told otherwise", mend};
+          who + " listens there by default", mend};
 }
 
 }  // namespace
@@ -102,30 +103,30 @@ std::vector<int> stolen_ports(const std::map<int, long>& udp_ports, int domain) 
 Finding check_port_range(int domain, int first, int last) {
   const int low = kBase + kPerDomain * domain;
   const int high = low + kLast + 1;
-  const std::string about = "UDP ports of domain " + std::to_string(domain);
+  const std::string about = fmt::format("UDP ports of domain {}", domain);
   const std::string text = std::to_string(low) + " to " + std::to_string(high);
   if (high < first || low > last) return {about, Level::fine, text};
   return {about, Level::note,
-          text + " lie within " + std::to_string(first) + " to " + std::to_string(last) +
-              ", which the system hands out to any program",
+          fmt::format("{} are within {} to {}, which the system gives to any program", text, first,
+                      last),
           "a program that asks for any port may get one of them, and a participant then looks for "
           "another",
-          "choose a domain from 0 to " + std::to_string((first - kBase - kLast - 2) / kPerDomain) +
-              " (ROS_DOMAIN_ID)"};
+          fmt::format("choose a domain from 0 to {} (ROS_DOMAIN_ID)",
+                      (first - kBase - kLast - 2) / kPerDomain)};
 }
 
 std::vector<Finding> check_ports(int domain, bool bridge_runs) {
   std::vector<Finding> findings;
-  int first = 32768, last = 60999;  // Linux' own choice
+  int first = 32768, last = 60999;  // Linux' default
   std::ifstream("/proc/sys/net/ipv4/ip_local_port_range") >> first >> last;
   findings.push_back(check_port_range(domain, first, last));
   const auto udp = ports_in_use(content_of("/proc/net/udp"));
   for (const int port : stolen_ports(udp, domain)) {
-    findings.push_back(
-        {"UDP port " + std::to_string(port), Level::warning,
-         "of this domain is held by " + holder_of(udp.at(port)) + ", which is no participant of it",
-         "a participant that comes to this port goes on to the next, or cannot join",
-         "end that program, or choose another ROS_DOMAIN_ID"});
+    findings.push_back({"UDP port " + std::to_string(port), Level::warning,
+                        "of this domain is held by " + holder_of(udp.at(port)) +
+                            ", which is not a participant of it",
+                        "a participant that needs this port takes the next one, or cannot join",
+                        "end that program, or choose another ROS_DOMAIN_ID"});
   }
   const auto listening = ports_in_use(content_of("/proc/net/tcp"));
   if (bridge_runs && listening.contains(kBridgePort)) {
@@ -138,7 +139,7 @@ std::vector<Finding> check_ports(int domain, bool bridge_runs) {
         "--bridge ws://127.0.0.1:8766"));
   }
   findings.push_back(check_viewer_port(listening, kPagePort, "the page of goshawk view",
-                                       "end that program, or goshawk view --port 0 for any"));
+                                       "end that program, or use goshawk view --port 0"));
   return findings;
 }
 

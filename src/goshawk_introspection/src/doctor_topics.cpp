@@ -28,7 +28,7 @@ std::string who(const Owners& names, const EndpointInfo& e) {
   return found == names.end() ? "an unnamed process" : found->second;
 }
 
-// A reader that asks for more than a writer offers gets nothing from it, and no error either.
+// A reader that asks for more than a writer offers gets nothing from it, without an error.
 void check_pair(const Owners& names, const EndpointInfo& writer, const EndpointInfo& reader,
                 std::vector<Finding>& findings) {
   std::string asks;
@@ -39,8 +39,8 @@ void check_pair(const Owners& names, const EndpointInfo& writer, const EndpointI
   if (asks.empty()) return;
   findings.push_back(
       {"topic " + writer.topic, Level::fault,
-       who(names, reader) + " does not hear " + who(names, writer) + ": it asks for " + asks,
-       "a reader that asks for more than is offered gets nothing, and no error",
+       who(names, reader) + " gets nothing from " + who(names, writer) + ": it asks for " + asks,
+       "a reader that asks for more than is offered gets nothing, without an error",
        "let the reader ask for less, or the writer offer more"});
 }
 
@@ -52,8 +52,8 @@ void check_types(const std::string& topic, const std::vector<EndpointInfo>& ends
   std::string list;
   for (const auto& type : types) list += (list.empty() ? "" : ", ") + type;
   findings.push_back({"topic " + topic, Level::fault, "has several types: " + list,
-                      "who has another type is not heard",
-                      "give the topic one type, or one of them another name (-r from:=to)"});
+                      "nodes with different types do not hear each other",
+                      "use one type, or rename one of the topics (-r from:=to)"});
 }
 
 void check_topic(const Owners& names, const std::string& topic,

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -17,8 +19,8 @@ class Encoder {
  public:
   std::vector<unsigned char> take() { return std::move(bytes_); }
   Error error(const Type& type) const {
-    return fail(ErrorCode::invalid_input, "this is no " + std::string(type.name) + ": " + path_ +
-                                              (path_.empty() ? "" : " ") + fault_);
+    return fail(ErrorCode::invalid_input, "this is not a valid " + std::string(type.name) + ": " +
+                                              path_ + (path_.empty() ? "" : " ") + fault_);
   }
 
   // json == nullptr: left out, so everything inside is zero.
@@ -48,8 +50,8 @@ class Encoder {
       const std::string near = runtime::nearest_name(name, known);
       std::string all;
       for (const auto& k : known) all += (all.empty() ? "" : ", ") + k;
-      fault_ = "'" + name + "' is no field of " + std::string(type.name) +
-               (near.empty() ? "; its fields are " + all : "; did you mean " + near + "?");
+      fault_ = fmt::format("'{}' is not a field of {}; {}", name, type.name,
+                           near.empty() ? "its fields are " + all : "did you mean " + near + "?");
       return false;
     }
     return true;
@@ -64,13 +66,12 @@ class Encoder {
     } else if (json == nullptr) {
       count = field.size;
     } else if (count != field.size) {
-      fault_ =
-          "has " + std::to_string(count) + " elements: it must have " + std::to_string(field.size);
+      fault_ = fmt::format("has {} elements: it must have {}", count, field.size);
       return false;
     }
     for (std::size_t i = 0; i < count; ++i) {
       if (!write_one(field, json == nullptr ? nullptr : &(*json)[i])) {
-        path_ = "[" + std::to_string(i) + "]" + (path_.empty() ? "" : ".") + path_;
+        path_ = fmt::format("[{}]{}{}", i, path_.empty() ? "" : ".", path_);
         return false;
       }
     }
@@ -133,8 +134,8 @@ class Encoder {
       const bool fits = json->is_number_unsigned() ? std::in_range<T>(json->get<std::uint64_t>())
                                                    : std::in_range<T>(json->get<std::int64_t>());
       if (!fits) {
-        return wrong(*json, "from " + std::to_string(std::numeric_limits<T>::min()) + " to " +
-                                std::to_string(std::numeric_limits<T>::max()));
+        return wrong(*json, fmt::format("from {} to {}", std::numeric_limits<T>::min() + 0,
+                                        std::numeric_limits<T>::max() + 0));
       }
       value = json->get<T>();
     }

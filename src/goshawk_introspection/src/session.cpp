@@ -101,8 +101,9 @@ Error Session::no_topic(const std::string& topic, double timeout_s) const {
                                            topic, context_->domain(), timeout_s);
   if (context_->endpoints().empty()) {
     return fail(ErrorCode::stage_silent,
-                sentence + ": no topic at all was found. Is something running, with the same "
-                           "ROS_DOMAIN_ID?");
+                sentence +
+                    ": no topic at all was found. Is something running, with the same "
+                    "ROS_DOMAIN_ID?");
   }
   const std::string near = nearest_topic(topic);
   if (near.empty()) {

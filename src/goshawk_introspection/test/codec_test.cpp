@@ -171,7 +171,7 @@ TEST(CdrToJson, NamesTheFieldAtFault) {
   bytes[4 + 8 + 4 + 1] = 7;  // stamp, frame_id's length, its zero, then the bool
   const auto json = cdr_to_json(type("goshawk_msgs/msg/VehicleStatus"), bytes);
   ASSERT_FALSE(json);
-  EXPECT_THAT(json.error().message, HasSubstr("failsafe is a bool of value 7"));
+  EXPECT_THAT(json.error().message, HasSubstr("armed is a bool of value 7"));
 }
 
 TEST(CdrToJson, RefusesOtherEncapsulationsAndLeftovers) {
@@ -195,7 +195,7 @@ std::string fault(const char* type_name, const char* json) {
 TEST(JsonToCdr, NamesTheNearestFieldForAnUnknownOne) {
   EXPECT_THAT(
       fault("geometry_msgs/msg/PoseStamped", R"({"header": {"frameid": "map"}})"),
-      HasSubstr("header 'frameid' is no field of std_msgs/msg/Header; did you mean frame_id?"));
+      HasSubstr("header 'frameid' is not a field of std_msgs/msg/Header; did you mean frame_id?"));
   EXPECT_THAT(fault("std_msgs/msg/String", R"({"zzzzzzz": 1})"), HasSubstr("its fields are data"));
 }
 

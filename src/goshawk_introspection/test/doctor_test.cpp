@@ -45,7 +45,7 @@ TEST(Doctor, names_both_ends_where_a_reader_asks_for_more) {
   ASSERT_EQ(findings.size(), 1u);
   EXPECT_EQ(findings[0].level, Level::fault);
   EXPECT_EQ(findings[0].about, "topic /path");
-  EXPECT_THAT(findings[0].message, HasSubstr("/corridor_builder does not hear /path_search"));
+  EXPECT_THAT(findings[0].message, HasSubstr("/corridor_builder gets nothing from /path_search"));
   EXPECT_THAT(findings[0].message, HasSubstr("reliable, but best effort"));
   EXPECT_THAT(findings[0].message, HasSubstr("latched, but volatile"));
 }

@@ -61,7 +61,7 @@ TEST(Schema, GivesConstantsToTheFieldThatTheyName) {
   ASSERT_EQ(constants.size(), 5u);
   EXPECT_EQ(constants[3].name, "STATE_ARRIVED");
   EXPECT_EQ(constants[3].value, 3u);
-  EXPECT_THAT(*ros_msg_definition(state),
+  EXPECT_THAT(ros_msg_definition(state),
               HasSubstr("uint8 STATE_ARRIVED=3\nuint8 STATE_FAILED=4\nuint8 state  # "));
 }
 

@@ -1,6 +1,8 @@
-#include <fmt/format.h>
 #include <malloc.h>
+
+#include <fmt/format.h>
 #include <spdlog/logger.h>
+
 #include <optional>
 
 #include "cloud.hpp"

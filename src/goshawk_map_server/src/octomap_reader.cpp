@@ -2,6 +2,7 @@
 // file says, and report on stderr. So the bytes are walked here first; only a file that is whole
 // and sound reaches them.
 
+#include <fmt/format.h>
 #include <octomap/OcTree.h>
 
 #include <cmath>
@@ -55,12 +56,15 @@ Result<Header> read_header(std::string_view bytes, std::string_view first_line) 
   return malformed("the header has no 'data' line: the file is truncated");
 }
 
+Status check_resolution(double resolution_m) {
+  // Below a micrometre and above a kilometre the bytes are damaged, and keys lose their meaning.
+  if (resolution_m >= 1e-6 && resolution_m <= 1e3) return success();
+  return malformed(
+      fmt::format("its resolution is {} m: from 1e-6 to 1e3 m can be read", resolution_m));
+}
+
 Status check_header(const Header& header) {
-  // Below a micrometre and above a kilometre a file is damaged, and keys lose their meaning.
-  if (!(header.resolution_m >= 1e-6 && header.resolution_m <= 1e3)) {
-    return malformed("the header gives a resolution of " + std::to_string(header.resolution_m) +
-                     " m");
-  }
+  if (auto status = check_resolution(header.resolution_m); !status) return status;
   if (header.nodes == 0) return fail(ErrorCode::map_empty, "the tree has no node");
   return success();
 }
@@ -71,15 +75,16 @@ class Walker {
  public:
   explicit Walker(std::string_view bytes, Format format) : bytes_(bytes), format_(format) {}
 
-  Status run(std::uint64_t expected_nodes) {
+  /// @param expected_nodes what the header says, if there is a header
+  Status run(std::optional<std::uint64_t> expected_nodes) {
     const char* fault = walk(0);
     if (fault != nullptr) return malformed(fault);
     if (at_ != bytes_.size()) {
-      return malformed(std::to_string(bytes_.size() - at_) + " bytes are left after the tree");
+      return malformed(fmt::format("{} bytes are left after the tree", bytes_.size() - at_));
     }
-    if (nodes_ != expected_nodes) {
-      return malformed("the header promises " + std::to_string(expected_nodes) +
-                       " nodes, the tree has " + std::to_string(nodes_));
+    if (expected_nodes && nodes_ != *expected_nodes) {
+      return malformed(
+          fmt::format("the header promises {} nodes, the tree has {}", *expected_nodes, nodes_));
     }
     if (nodes_ == 1) return fail(ErrorCode::map_empty, "the tree is only a root");
     return success();
@@ -148,6 +153,16 @@ struct FullFormat {
   }
 };
 
+Result<OcTreePtr> read_nodes(std::string_view payload, double resolution_m,
+                             std::optional<std::uint64_t> expected_nodes) {
+  Walker walker(payload, BinaryFormat{});
+  if (auto status = walker.run(expected_nodes); !status) return status.error();
+  auto tree = std::make_shared<octomap::OcTree>(resolution_m);
+  MemoryStream stream(payload);
+  tree->readBinaryData(stream);
+  return tree;
+}
+
 }  // namespace
 
 Result<OcTreePtr> read_bt(std::string_view bytes) {
@@ -157,13 +172,13 @@ Result<OcTreePtr> read_bt(std::string_view bytes) {
   if (header->kind != "OcTree" && header->kind != "ColorOcTree") {
     return malformed("it holds a tree of kind '" + header->kind + "': only OcTree is read");
   }
-  Walker walker(header->payload, BinaryFormat{});
-  if (auto status = walker.run(header->nodes); !status) return status.error();
+  return read_nodes(header->payload, header->resolution_m, header->nodes);
+}
 
-  auto tree = std::make_shared<octomap::OcTree>(header->resolution_m);
-  MemoryStream stream(header->payload);
-  tree->readBinaryData(stream);
-  return tree;
+Result<OcTreePtr> read_binary_payload(std::string_view payload, double resolution_m) {
+  if (auto status = check_resolution(resolution_m); !status) return status.error();
+  if (payload.empty()) return fail(ErrorCode::map_empty, "the tree has no node");
+  return read_nodes(payload, resolution_m, {});
 }
 
 Result<OcTreePtr> read_ot(std::string_view bytes) {

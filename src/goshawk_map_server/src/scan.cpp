@@ -15,7 +15,7 @@ octomap::point3d to_point(const Vec3& p) {
 }
 
 // Voxels of the tree's raster, in keys.
-struct KeyBox {
+struct ScanKeys {
   Index3 lower, upper;  // upper excluded
 
   bool holds(const octomap::OcTreeKey& key) const {
@@ -25,12 +25,12 @@ struct KeyBox {
   }
 };
 
-Result<KeyBox> keys_of(const Box& box, double resolution_m) {
+Result<ScanKeys> keys_of(const Box& box, double resolution_m) {
   const auto raster = raster_of(box, resolution_m, std::numeric_limits<std::int64_t>::max());
   if (!raster) return raster.error();
   const Vec3 steps = (raster->origin_map / resolution_m).array().round().matrix();
   const Index3 lower{int(steps.x()) + 32768, int(steps.y()) + 32768, int(steps.z()) + 32768};
-  return KeyBox{lower, lower + raster->size};
+  return ScanKeys{lower, lower + raster->size};
 }
 
 // How far a ray to p, given by its share of the way, stays inside the box; below 0 if it misses it.
@@ -56,7 +56,7 @@ class Scan {
       : tree_(tree), origin_(origin), max_range_m_(max_range_m), box_(box) {}
 
   InsertedScan sort(std::span<const Vec3> points);
-  void write(octomap::OcTree& tree, const KeyBox* keys);
+  void write(octomap::OcTree& tree, const ScanKeys* keys);
 
  private:
   void clear_to(const Vec3& ray);
@@ -101,7 +101,7 @@ void Scan::clear_to(const Vec3& ray) {
   cleared_.push_back(origin_ + share * ray);
 }
 
-void Scan::write(octomap::OcTree& tree, const KeyBox* keys) {
+void Scan::write(octomap::OcTree& tree, const ScanKeys* keys) {
   octomap::KeySet free, occupied;
   tree.computeUpdate(hits_, to_point(origin_), free, occupied, max_range_m_);
   octomap::KeyRay ray;
@@ -140,7 +140,7 @@ Result<InsertedScan> insert_scan(octomap::OcTree& tree, std::span<const Vec3> po
                             "cloud_origin_x_m, _y_m and _z_m for a file",
                             to_text(sensor_origin_map), max_range_m));
   }
-  KeyBox keys{};
+  ScanKeys keys{};
   if (box != nullptr) {
     const auto found = keys_of(*box, tree.getResolution());
     if (!found) return found.error();

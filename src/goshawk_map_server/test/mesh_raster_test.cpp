@@ -1,5 +1,6 @@
 #include "mesh_raster.hpp"
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 #include <octomap/OcTree.h>
 
+#include <cmath>
 #include <limits>
+#include <sstream>
 
 #include "goshawk/map_server/map_file.hpp"
 #include "goshawk/map_server/voxel_map.hpp"
@@ -145,6 +147,52 @@ TEST(BinaryPayload, IsWhatOctoMapReadsAfterTheHeader) {
   octomap::OcTree other(0.2);
   other.readBinaryData(stream);
   EXPECT_EQ(voxelize(other).value().occupied, world.occupied);
+}
+
+TEST(ReadBinaryPayload, GivesBackTheTreeThatWasWritten) {
+  const worlds::World world = worlds::make_world(worlds::default_world()).value();
+  const OcTreePtr tree = make_octree(world.geometry, world.occupied, {}).value();
+  const auto again = read_binary_payload(binary_payload(*tree), 0.2);
+  ASSERT_TRUE(again) << again.error().message;
+  const RawVoxels voxels = voxelize(**again).value();
+  EXPECT_EQ(voxels.geometry.size, world.geometry.size);
+  EXPECT_EQ(voxels.occupied, world.occupied);
+}
+
+// Fifteen inner nodes along child 7 (all axes upwards), then one node of voxels at the upper end.
+std::string corner_payload(unsigned leaf_bits) {
+  std::string bytes;
+  for (int level = 0; level < 15; ++level) bytes += std::string("\x00\xc0", 2);
+  bytes += char(leaf_bits & 255U);
+  bytes += char(leaf_bits >> 8U);
+  return bytes;
+}
+
+TEST(ReadBinaryPayload, TellsOccupiedFromFreeAndUnknown) {
+  // Child 0 is free, child 1 (x upwards) and child 6 (y and z upwards) are occupied.
+  const auto tree = read_binary_payload(corner_payload(1U | 2U << 2U | 2U << 12U), 0.5);
+  ASSERT_TRUE(tree) << tree.error().message;
+  const RawVoxels voxels = voxelize(**tree).value();
+  EXPECT_EQ(voxels.geometry.size, (Index3{2, 2, 2}));
+  EXPECT_TRUE(voxels.geometry.origin_map.isApprox(Vec3::Constant(0.5 * 32766)));
+  EXPECT_EQ(voxels.occupied.count(), 2);
+  EXPECT_TRUE(voxels.occupied.test({1, 0, 0}) && voxels.occupied.test({0, 1, 1}));
+  EXPECT_EQ(voxels.known.count(), 3);
+  EXPECT_TRUE(voxels.known.test({0, 0, 0}));
+}
+
+TEST(ReadBinaryPayload, RefusesWhatIsNotOneWholeTree) {
+  EXPECT_EQ(read_binary_payload("", 0.1).code(), ErrorCode::map_empty);
+  EXPECT_EQ(read_binary_payload(std::string(2, '\0'), 0.1).code(), ErrorCode::map_empty);
+  const std::string whole = corner_payload(2U);
+  for (const double resolution_m : {0.0, -1.0, 1e-7, 1e4, std::nan("")}) {
+    EXPECT_EQ(read_binary_payload(whole, resolution_m).code(), ErrorCode::map_malformed);
+  }
+  for (std::size_t k = 1; k < whole.size(); ++k) {
+    EXPECT_EQ(read_binary_payload(whole.substr(0, k), 0.1).code(), ErrorCode::map_malformed) << k;
+  }
+  EXPECT_EQ(read_binary_payload(whole + " ", 0.1).code(), ErrorCode::map_malformed);
+  EXPECT_EQ(read_binary_payload(std::string(100000, '\xff'), 0.1).code(), ErrorCode::map_malformed);
 }
 
 }  // namespace

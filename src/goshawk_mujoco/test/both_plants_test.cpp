@@ -14,26 +14,26 @@ namespace {
 using simulator::Quadrotor;
 
 // A round through five places, with 2 m/s and 2 m/s^2 at the most.
-tracker::CommittedTrajectory round_trip(std::uint64_t seed) {
+CommittedTrajectory round_trip(std::uint64_t seed) {
   Random random(seed);
   std::vector<Vec3> places{{0, 0, 1}};
   for (int k = 0; k < 4; ++k) {
     places.push_back(places.back() + Vec3(random.uniform(-1.5, 1.5), random.uniform(0.5, 1.5),
                                           random.uniform(-0.3, 0.5)));
   }
-  tracker::CommittedTrajectory c;
-  c.id = seed;
+  Trajectory trajectory;
   for (std::size_t k = 1; k < places.size(); ++k) {
     const double duration_s = 1.6 * std::sqrt((places[k] - places[k - 1]).norm() * 5.77 / 2.0);
-    c.trajectory.pieces.push_back(
+    trajectory.pieces.push_back(
         BezierPiece::between({.position = places[k - 1]}, {.position = places[k]}, duration_s));
   }
-  c.polytopes = {Polytope::box(Vec3::Constant(-50.0), Vec3::Constant(50.0))};
-  c.limits = {.v_max_m_s = 10.0, .a_max_m_s2 = 10.0};
-  c.start = c.trajectory.pieces.front().sample(0.0);
-  c.goal = {.position = places.back()};
-  c.start_time_ns = 1'000'000'000;
-  return c;
+  const FlatState start{.position = places.front()}, goal{.position = places.back()};
+  auto certified =
+      certify(std::move(trajectory), {Polytope::box(Vec3::Constant(-50.0), Vec3::Constant(50.0))},
+              {.v_max_m_s = 10.0, .a_max_m_s2 = 10.0}, start, goal);
+  return CommittedTrajectory::make(
+             {.id = seed, .nominal = std::move(certified).value(), .start_time_ns = 1'000'000'000})
+      .value();
 }
 
 struct Flown {
@@ -43,15 +43,15 @@ struct Flown {
 };
 
 Flown fly(const simulator::Config& config, const plant::PlantFactory& plant,
-          const tracker::CommittedTrajectory& committed) {
+          const CommittedTrajectory& committed) {
   auto vehicle = Quadrotor::create(config, plant).value();
   tracker::Config tracking;
   tracking.max_tilt_rad = 1.2;
   tracking.min_thrust_n = 0.5;
   auto tracker = tracker::Tracker::create(tracking).value();
-  EXPECT_TRUE(vehicle.reset(committed.start.position, 0.0));
+  EXPECT_TRUE(vehicle.reset(committed.nominal().start().position, 0.0));
   Flown flown;
-  const double duration_s = committed.trajectory.duration_s() + 2.0;
+  const double duration_s = committed.flown().duration_s() + 2.0;
   for (int ms = 0; ms < int(1000.0 * duration_s); ++ms) {
     if (ms % 4 == 0) {
       const auto command = tracker.step(vehicle.state(), vehicle.time_ns());

@@ -3,7 +3,6 @@
 #include "goshawk/navigator/navigator.hpp"
 #include "goshawk/runtime/component.hpp"
 #include "goshawk/stage/intake.hpp"
-#include "pictures.hpp"
 
 namespace goshawk::navigator {
 namespace {
@@ -31,7 +30,8 @@ std::uint8_t to_msg(State state) {
 constexpr double kAlive_s = 0.5;  // the newest state again: the tracker lands without it
 
 /// goal_pose, odom, trajectory, stage_report -> plan_request, committed_trajectory,
-/// navigator_state, navigator_alive
+/// navigator_state, navigator_alive. Counts on the monotonic clock; messages carry the wall
+/// clock's.
 class NavigatorComponent : public Component {
  public:
   explicit NavigatorComponent(Node& node)
@@ -42,13 +42,10 @@ class NavigatorComponent : public Component {
         requests_(node.advertise<msg::PlanRequest>("plan_request", Qos::reliable_last())),
         commits_(node.advertise<msg::CommittedTrajectory>("committed_trajectory", Qos::latched())),
         states_(node.advertise<msg::NavigatorState>("navigator_state", Qos::latched(20))),
-        alive_(node.advertise<msg::NavigatorState>("navigator_alive", Qos::best_effort())),
-        path_lines_(node.advertise<nav_msgs::msg::Path>("path_line", Qos::best_effort())),
-        markers_(
-            node.advertise<visualization_msgs::msg::MarkerArray>("markers", Qos::best_effort())) {
+        alive_(node.advertise<msg::NavigatorState>("navigator_alive", Qos::best_effort())) {
     subscribe();
     node.every(0.02, [this] {
-      navigator_.tick(node_.now_ns());
+      navigator_.tick(node_.monotonic_ns());
       carry_out();
     });
     publish(StateOrder{});
@@ -68,11 +65,10 @@ class NavigatorComponent : public Component {
         "goal_pose", Qos::reliable_last(),
         [this](const geometry_msgs::msg::PoseStamped& m, const MessageInfo&) { on_goal(m); });
     node_.subscribe<nav_msgs::msg::Odometry>(
-        "odom", Qos::best_effort(),
-        [this](const nav_msgs::msg::Odometry& m, const MessageInfo& info) {
+        "odom", Qos::best_effort(), [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) {
           const auto state = conversions::from_msg(m);
           if (!state) return;  // the tracker reports bad odometry
-          navigator_.on_odometry(*state, info.received_ns);
+          navigator_.on_odometry(*state, node_.monotonic_ns());
         });
     node_.subscribe<msg::BezierTrajectory>(
         "trajectory", Qos::reliable_last(),
@@ -88,8 +84,9 @@ class NavigatorComponent : public Component {
     Status status = conversions::check_frame(m.header(), conversions::kMapFrame, "a goal");
     if (status) {
       const auto& q = m.pose().orientation();
-      status = navigator_.on_goal(conversions::from_msg(m.pose().position()),
-                                  yaw_of(Quaternion(q.w(), q.x(), q.y(), q.z())), node_.now_ns());
+      status =
+          navigator_.on_goal(conversions::from_msg(m.pose().position()),
+                             yaw_of(Quaternion(q.w(), q.x(), q.y(), q.z())), node_.monotonic_ns());
     }
     if (!status) {
       reporter_.fault(status.error());
@@ -105,12 +102,12 @@ class NavigatorComponent : public Component {
     auto candidate = candidate_of(m);
     if (!candidate) {
       navigator_.on_report(m.request().id(), StageRole::trajectory_optimizer, candidate.error(),
-                           info.received_ns);
+                           node_.monotonic_ns());
       reporter_.failed(m.request().id(), candidate.error());
     } else {
       wire_ns_ = wire_time_ns(m.header(), info);
       candidate_ = m;
-      navigator_.on_trajectory(*std::move(candidate), info.received_ns);
+      navigator_.on_trajectory(*std::move(candidate), node_.monotonic_ns());
     }
     carry_out();
   }
@@ -132,7 +129,7 @@ class NavigatorComponent : public Component {
       if (to_string(code) == m.code()) outcome.code = code;
     }
     navigator_.on_report(m.request_id(), conversions::stage_role_of(m.stage()), outcome,
-                         node_.now_ns());
+                         node_.monotonic_ns());
     carry_out();
   }
 
@@ -142,9 +139,16 @@ class NavigatorComponent : public Component {
     }
   }
 
+  std::int64_t to_wall_ns(std::int64_t monotonic_ns) const {
+    return monotonic_ns + (node_.now_ns() - node_.monotonic_ns());
+  }
+
   void publish(const PlanRequest& request) {
     auto m = conversions::to_msg(request);
     m.header().stamp(conversions::to_stamp(node_.now_ns()));
+    if (request.start_time_ns) {
+      m.start_time(conversions::to_stamp(to_wall_ns(*request.start_time_ns)));
+    }
     reporter_.send(requests_, m);
   }
 
@@ -153,10 +157,10 @@ class NavigatorComponent : public Component {
     m.header(conversions::make_header(node_.now_ns()));
     m.nominal(candidate_);
     conversions::fill_msg(committed, m);
+    const std::int64_t start_ns = to_wall_ns(committed.start_time_ns());
+    m.start_time(conversions::to_stamp(start_ns));
     reporter_.send(commits_, m);
     reporter_.answered(committed.id(), {.wire_ns = wire_ns_, .compute_ns = 0});
-    reporter_.send(path_lines_, path_line(committed.flown(), committed.start_time_ns(), 0.05));
-    reporter_.send(markers_, corridor_markers(committed));
   }
 
   void publish(const StateOrder& order) {
@@ -179,8 +183,6 @@ class NavigatorComponent : public Component {
   Publisher<msg::CommittedTrajectory> commits_;
   Publisher<msg::NavigatorState> states_;
   Publisher<msg::NavigatorState> alive_;
-  Publisher<nav_msgs::msg::Path> path_lines_;
-  Publisher<visualization_msgs::msg::MarkerArray> markers_;
   msg::BezierTrajectory candidate_;  // the newest certified one, to commit
   msg::NavigatorState state_message_;
   std::int64_t wire_ns_ = 0;

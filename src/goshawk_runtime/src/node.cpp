@@ -206,6 +206,10 @@ std::int64_t Node::now_ns() const {
   return impl_->time.on ? impl_->time.now_ns : clock_->now_ns();
 }
 
+std::int64_t Node::monotonic_ns() const {
+  return impl_->time.on ? impl_->time.now_ns : clock_->monotonic_ns();
+}
+
 std::string Node::full_name() const {
   return (args_.node_namespace == "/" ? "" : args_.node_namespace) + "/" + name_;
 }

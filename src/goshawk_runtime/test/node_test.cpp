@@ -39,6 +39,20 @@ class Nodes : public testing::Test {
   }
 };
 
+TEST_F(Nodes, AClockThatIsSetTellsOtherStampsAndTheSameDurations) {
+  const auto clock = std::make_shared<ManualClock>();
+  const Node node(*context_a_, "clocked", {}, clock);
+  clock->set(100);
+  clock->step_wall_clock(-30);
+  EXPECT_EQ(node.now_ns(), 70);
+  EXPECT_EQ(node.monotonic_ns(), 100);
+  clock->advance(5);
+  EXPECT_EQ(node.now_ns(), 75);
+  EXPECT_EQ(node.monotonic_ns(), 105);
+  const std::int64_t before_ns = a_.monotonic_ns();
+  EXPECT_GE(b_.monotonic_ns(), before_ns);  // one clock for a whole machine
+}
+
 TEST_F(Nodes, DeliverInOrder) {
   const auto publisher = a_.advertise<String>("t", Qos::reliable_last(100));
   std::vector<std::string> got;

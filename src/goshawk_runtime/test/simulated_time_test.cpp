@@ -39,6 +39,7 @@ TEST(SimulatedTime, NowAndTimersFollowTheClockTopicAloneAndItsRestart) {
   node.spin_some(0.3);
   EXPECT_EQ(calls, 0);  // the machine's time passes, the simulation's does not
   ASSERT_TRUE(tell(5 * kSecond));
+  EXPECT_EQ(node.monotonic_ns(), 5 * kSecond);  // durations are simulated as well
   ASSERT_TRUE(tell(5 * kSecond + 50'000'000));
   EXPECT_EQ(calls, 0);
   ASSERT_TRUE(tell(5 * kSecond + 150'000'000));

@@ -43,22 +43,12 @@ CertifiedTrajectory plan(const std::shared_ptr<const VoxelGrid>& map, const Flat
   auto builder = need(corridor_builder::CorridorBuilder::create({}), "builder");
   const Corridor corridor = need(builder.build(*map, path.waypoints_map), "corridor");
   auto optimizer = need(trajectory_optimizer::TrajectoryOptimizer::create({}), "optimizer");
-  const auto solution = need(optimizer.optimise(corridor, start, goal, limits), "trajectory");
+  const PlanRequest request{.start = start, .goal = goal, .limits = limits};
+  const auto solution = need(optimizer.optimise(request, corridor), "trajectory");
   std::printf("path %.9f m, %zu polytopes, %zu pieces, %.9f s\n", path.pruned_length_m,
-              corridor.polytopes.size(), solution.trajectory.pieces.size(),
-              solution.trajectory.duration_s());
-  return need(certify(solution.trajectory, corridor.polytopes, limits, start, goal), "certificate");
-}
-
-tracker::CommittedTrajectory to_track(const CommittedTrajectory& committed) {
-  const CertifiedTrajectory& nominal = committed.nominal();
-  return {.id = committed.id(),
-          .trajectory = committed.flown(),
-          .polytopes = committed.flown_polytopes(),
-          .limits = nominal.limits(),
-          .start = nominal.start(),
-          .goal = nominal.goal(),
-          .start_time_ns = committed.start_time_ns()};
+              corridor.polytopes.size(), solution.trajectory().pieces.size(),
+              solution.trajectory().duration_s());
+  return solution.certified;
 }
 
 // @return [m] the largest tracking error
@@ -70,7 +60,7 @@ double fly(const CommittedTrajectory& committed, const FlatState& start) {
   while (vehicle.time_ns() < std::int64_t(1e9 * (committed.flown().duration_s() + 1.0))) {
     const auto now_ns = vehicle.time_ns();
     need(vehicle.command(need(tracker.step(vehicle.state(), now_ns), "step")), "command");
-    if (!accepted) need(tracker.accept(to_track(committed), now_ns), "accept");
+    if (!accepted) need(tracker.accept(committed, now_ns), "accept");
     accepted = true;
     need(vehicle.advance(0.004), "advance");
   }

@@ -124,8 +124,7 @@ OUTPUTS = {
     "path_search": ["path"],
     "corridor_builder": ["corridor"],
     "trajectory_optimizer": ["trajectory"],
-    "navigator": ["plan_request", "committed_trajectory", "navigator_state", "navigator_alive",
-                  "path_line", "markers"],
+    "navigator": ["plan_request", "committed_trajectory", "navigator_state", "navigator_alive"],
     "tracker": ["command", "tracking_state"],
     "flight_check": [],  # reports only
     PLANT: ["odom", "odom_true", "vehicle_status", "/tf"],

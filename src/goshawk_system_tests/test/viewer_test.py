@@ -143,7 +143,7 @@ class FlightPage(SystemTest):
             port = taken.getsockname()[1]
             outcome = self.sandbox.goshawk("view", folder, "--no-open", "--port", port)
         self.assertEqual(outcome.status, 1, str(outcome))
-        self.assertIn(f"port {port} cannot be had", outcome.err)
+        self.assertIn(f"port {port} cannot be used", outcome.err)
 
 
 class LiveMapView(MapCase):
@@ -173,7 +173,9 @@ class LiveView(StackTest):
     """The bridge beside a flight: a page that flies it, other viewers' topics, a busy port."""
 
     launch_file = "flight_view"
-    ros_args = ("-p", "viewer_bridge:port:=0")
+    page_port = harness.free_port()
+    ros_args = ("-p", "viewer_bridge:port:=0",
+                "-p", f"viewer_bridge:origins:=http://127.0.0.1:{page_port}")
 
     @property
     def port(self):
@@ -186,8 +188,8 @@ class LiveView(StackTest):
     def test_a_click_on_the_page_flies_the_vehicle(self):
         browser_environment(self)
         bridge = f"ws://127.0.0.1:{self.port}"
-        view = self.sandbox.start(GOSHAWK, "view", "--live", "--bridge", bridge, "--port", "0",
-                                  "--no-open", "--json")
+        view = self.sandbox.start(GOSHAWK, "view", "--live", "--bridge", bridge, "--port",
+                                  str(self.page_port), "--no-open", "--json")
         shown = until(view.lines, 15.0)
         self.assertTrue(shown and shown[0]["ok"], str(view.outcome()))
         since = len(self.stack.states.lines())
@@ -204,8 +206,8 @@ class LiveView(StackTest):
         # The goal of its layout is (3, 8, 2).
         self.assertEqual(self.stack.fly_to(NEAR)["state"], "arrived")
         view = self.sandbox.start(GOSHAWK, "view", "--foxglove", "--live", "--bridge",
-                                  f"ws://127.0.0.1:{self.port}", "--port", "0", "--no-open",
-                                  "--json", env=environment)
+                                  f"ws://127.0.0.1:{self.port}", "--port", str(self.page_port),
+                                  "--no-open", "--json", env=environment)
         shown = until(view.lines, 60.0)
         self.assertTrue(shown and shown[0]["ok"], str(view.outcome()))
         since = len(self.stack.states.lines())
@@ -217,7 +219,7 @@ class LiveView(StackTest):
 
     def test_other_viewers_get_markers(self):
         self.assertEqual(self.stack.fly_to(NEAR)["state"], "arrived")
-        for topic, wanted in [("view/obstacles", {"obstacles"}),
+        for topic, wanted in [("view/obstacles", {"obstacles"}), ("markers", {"corridor"}),
                               ("view/plan", {"pruned path", "path as searched", "corridor",
                                              "corridor edges", "trajectory"}),
                               ("view/flown", {"flown track"})]:
@@ -229,12 +231,23 @@ class LiveView(StackTest):
                 self.assertEqual({m["ns"] for m in markers}, wanted)
                 for marker in markers:
                     self.assertGreater(len(marker["points"]), 1, marker["ns"])
+        line = json.loads(self.sandbox.goshawk("topic", "echo", "path_line", "--once", "--json",
+                                               "--timeout", "10").out)["poses"]
+        end = line[-1]["pose"]["position"]
+        self.assertLess(math.dist((end["x"], end["y"], end["z"]), NEAR), 1e-6)
+
+    def test_a_page_that_the_bridge_does_not_know_is_refused(self):
+        outcome = self.sandbox.goshawk("view", "--live", "--bridge", f"ws://127.0.0.1:{self.port}",
+                                       "--port", "0", "--no-open")
+        self.assert_civil(outcome)
+        self.assertEqual(outcome.status, 1, str(outcome))
+        self.assertIn("-p origins:=http://127.0.0.1:", outcome.err)
 
     def test_a_second_bridge_on_the_port_says_so(self):
         outcome = self.sandbox.goshawk("run", "viewer_bridge:second", "--ros-args", "-p",
                                        f"port:={self.port}")
         self.assertEqual(outcome.status, 2, str(outcome))
-        self.assertIn(f"port {self.port} of 127.0.0.1 cannot be had", outcome.err)
+        self.assertIn(f"port {self.port} of 127.0.0.1 cannot be used", outcome.err)
 
 
 if __name__ == "__main__":

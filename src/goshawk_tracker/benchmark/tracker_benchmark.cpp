@@ -9,17 +9,18 @@ namespace {
 
 // Back and forth in `pieces` quintics from rest to rest, a second each.
 CommittedTrajectory there_and_back(int pieces) {
-  CommittedTrajectory c;
+  Trajectory trajectory;
   for (int k = 0; k < pieces; ++k) {
     const FlatState near_end{.position = {0, 0, 1}}, far_end{.position = {0.2, 0, 1}};
-    c.trajectory.pieces.push_back(k % 2 == 0 ? BezierPiece::between(near_end, far_end, 1.0)
-                                             : BezierPiece::between(far_end, near_end, 1.0));
+    trajectory.pieces.push_back(k % 2 == 0 ? BezierPiece::between(near_end, far_end, 1.0)
+                                           : BezierPiece::between(far_end, near_end, 1.0));
   }
-  c.polytopes = {Polytope::box(Vec3::Constant(-5.0), Vec3::Constant(5.0))};
-  c.limits = {.v_max_m_s = 2.0, .a_max_m_s2 = 5.0};
-  c.start = c.trajectory.pieces.front().sample(0.0);
-  c.goal = c.trajectory.pieces.back().sample(1.0);
-  return c;
+  const FlatState start = trajectory.pieces.front().sample(0.0);
+  const FlatState goal = trajectory.pieces.back().sample(1.0);
+  auto certified =
+      certify(std::move(trajectory), {Polytope::box(Vec3::Constant(-5.0), Vec3::Constant(5.0))},
+              {.v_max_m_s = 2.0, .a_max_m_s2 = 5.0}, start, goal);
+  return CommittedTrajectory::make({.id = 1, .nominal = std::move(certified).value()}).value();
 }
 
 void step(benchmark::State& state, const char* controller) {
@@ -29,7 +30,7 @@ void step(benchmark::State& state, const char* controller) {
   auto tracker = Tracker::create(config).value();
   const auto committed = there_and_back(pieces);
   RigidBodyState body;
-  body.position_map = committed.start.position;
+  body.position_map = committed.nominal().start().position;
   std::int64_t now_ns = 0;
   const auto begin_again = [&] {
     now_ns = 0;
@@ -54,7 +55,7 @@ void accept(benchmark::State& state) {
   auto tracker = Tracker::create({}).value();
   const auto committed = there_and_back(int(state.range(0)));
   RigidBodyState body;
-  body.position_map = committed.start.position;
+  body.position_map = committed.nominal().start().position;
   if (!tracker.step(body, 0)) throw std::logic_error("the benchmark's odometry was refused");
   for (auto _ : state) benchmark::DoNotOptimize(tracker.accept(committed, 0));
 }

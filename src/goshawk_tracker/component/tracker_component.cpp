@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -8,6 +10,7 @@
 #include "goshawk/stage/intake.hpp"
 #include "goshawk/stage/map_subscription.hpp"
 #include "goshawk/tracker/config.hpp"
+#include "goshawk/tracker/odometry_clock.hpp"
 #include "goshawk/tracker/tracker.hpp"
 
 namespace goshawk::tracker {
@@ -16,6 +19,8 @@ namespace {
 using namespace goshawk::runtime;
 using namespace goshawk::stage;
 namespace msg = goshawk_msgs::msg;
+
+constexpr double kClockStep_s = 0.02;  // less is not worth a sentence
 
 Tracker make_tracker(const Config& config) {
   auto tracker = Tracker::create(config);
@@ -74,7 +79,8 @@ class StepStatistics {
 };
 
 /// committed_trajectory, odom, navigator_alive -> command, tracking_state; and map/voxels, once
-/// there may be a landing
+/// there may be a landing. Counts on the monotonic clock: what others stamp with their wall clocks
+/// is brought to it once, when it arrives.
 class TrackerComponent : public Component {
  public:
   explicit TrackerComponent(Node& node)
@@ -82,6 +88,7 @@ class TrackerComponent : public Component {
         config_(
             node.parameters<Config>([this](const Config& c) { return tracker_.reconfigure(c); })),
         tracker_(make_tracker(config_)),
+        odometry_clock_(config_.odometry_timeout_s),
         reporter_(node, StageRole::tracker, config_.controller),
         commands_(node.advertise<msg::AttitudeSetpoint>("command", Qos::best_effort())),
         states_(node.advertise<msg::TrackingState>("tracking_state", Qos::best_effort())) {
@@ -91,45 +98,39 @@ class TrackerComponent : public Component {
     node.subscribe<nav_msgs::msg::Odometry>(
         "odom", Qos::best_effort(),
         [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) { on_odometry(m); });
-    node.subscribe<msg::NavigatorState>(
-        "navigator_alive", Qos::best_effort(),
-        [this](const msg::NavigatorState&, const MessageInfo& info) {
-          tracker_.heard_navigator(info.received_ns);
-        });
+    node.subscribe<msg::NavigatorState>("navigator_alive", Qos::best_effort(),
+                                        [this](const msg::NavigatorState&, const MessageInfo&) {
+                                          tracker_.heard_navigator(node_.monotonic_ns());
+                                        });
     node.every(0.05, [this] { watch(); });
     reporter_.ready("tracks with " + config_.controller);
   }
 
  private:
+  /// A commit, and what its start is on the monotonic clock.
+  struct Commit {
+    msg::CommittedTrajectory message;
+    std::int64_t start_ns = 0;
+  };
+
   void on_commit(const msg::CommittedTrajectory& m, const MessageInfo& info) {
     const Timing timing{.wire_ns = wire_time_ns(m.header(), info)};
+    const std::int64_t to_monotonic_ns = node_.monotonic_ns() - node_.now_ns();
+    const std::int64_t start_ns = conversions::to_ns(m.start_time()) + to_monotonic_ns;
     // Latched, it can arrive before the first odometry does: it waits, as nothing is flown yet.
     if (tracker_.status().mode == Mode::idle) {
-      waiting_ = m;
+      waiting_ = Commit{m, start_ns};
       return;
     }
-    accept(m, timing);
+    accept(m, start_ns, timing);
   }
 
-  void accept(const msg::CommittedTrajectory& m, Timing timing) {
+  void accept(const msg::CommittedTrajectory& m, std::int64_t start_ns, Timing timing) {
     const std::uint64_t id = m.nominal().request().id();
-    const auto received = conversions::from_msg(m);
+    auto received = conversions::from_msg(m);
     if (!received) return reporter_.failed(id, received.error(), timing);
-    const auto& last = received->stop() ? received->stop()->trajectory : received->nominal();
-    CommittedTrajectory committed{.id = id,
-                                  .trajectory = received->flown(),
-                                  .polytopes = received->flown_polytopes(),
-                                  .limits = received->nominal().limits(),
-                                  .start = received->nominal().start(),
-                                  .goal = last.goal(),
-                                  .start_time_ns = received->start_time_ns(),
-                                  .yaw_rad = received->yaw_rad()};
-    if (const auto& curve = received->yaw_curve()) {
-      committed.yaw_step_s = curve->step_s;
-      committed.yaw_points_rad = curve->points_rad;
-    }
-    const auto [status, compute_ns] =
-        timed([&] { return tracker_.accept(std::move(committed), node_.now_ns()); });
+    const auto [status, compute_ns] = timed(
+        [&] { return tracker_.accept(*std::move(received), start_ns, node_.monotonic_ns()); });
     timing.compute_ns = compute_ns;
     if (!status) return reporter_.failed(id, status.error(), timing);
     accepted_ = timing;
@@ -139,20 +140,29 @@ class TrackerComponent : public Component {
   void on_odometry(const nav_msgs::msg::Odometry& m) {
     const auto state = conversions::from_msg(m);
     if (!state) return reporter_.complain(state.error());
-    const std::int64_t stamp_ns = conversions::to_ns(m.header().stamp());
-    const std::int64_t now_ns = node_.now_ns();
+    const std::int64_t sent_stamp_ns = conversions::to_ns(m.header().stamp());
+    const std::int64_t now_ns = node_.monotonic_ns();
+    const auto made = odometry_clock_.read(sent_stamp_ns, node_.now_ns(), now_ns);
+    if (std::abs(made.set_by_s) >= kClockStep_s) report_clock(made.set_by_s);
     const auto [command, compute_ns] =
-        timed([&] { return tracker_.step(*state, stamp_ns, now_ns); });
+        timed([&] { return tracker_.step(*state, made.time_ns, now_ns); });
     count_step(compute_ns, now_ns);
     if (!command) return reporter_.complain(command.error());
     conversions::fill_msg(*command, command_message_);
     command_message_.header(conversions::make_header(node_.now_ns()));
     reporter_.send(commands_, command_message_);
     if (waiting_) {
-      accept(*waiting_, {});
+      accept(waiting_->message, waiting_->start_ns, {});
       waiting_.reset();
     }
-    publish_state(stamp_ns);
+    publish_state(sent_stamp_ns);
+  }
+
+  void report_clock(double set_by_s) {
+    reporter_.fault(fail(ErrorCode::clock_set,
+                         fmt::format("the clock that stamps odometry was set by {:.3g} s: its age "
+                                     "is taken to be as before",
+                                     set_by_s)));
   }
 
   // A second answer to the request, once its trajectory is flown: how well, and at what cost.
@@ -176,11 +186,11 @@ class TrackerComponent : public Component {
 
   // What must be said when odometry or the navigator are silent.
   void watch() {
-    tracker_.watch(node_.now_ns());
+    tracker_.watch(node_.monotonic_ns());
     // Not before: a large map would keep the control loop waiting while it is taken in.
     if (tracker_.needs_map() && !map_) {
       map_.emplace(node_, reporter_,
-                   [this](const auto& grid) { tracker_.set_map(grid, node_.now_ns()); });
+                   [this](const auto& grid) { tracker_.set_map(grid, node_.monotonic_ns()); });
     }
     report_fault(tracker_.status());
   }
@@ -213,12 +223,13 @@ class TrackerComponent : public Component {
   Node& node_;
   Config config_;
   Tracker tracker_;
+  OdometryClock odometry_clock_;
   StageReporter reporter_;
   Publisher<msg::AttitudeSetpoint> commands_;
   Publisher<msg::TrackingState> states_;
   msg::AttitudeSetpoint command_message_;
   std::optional<MapSubscription> map_;
-  std::optional<msg::CommittedTrajectory> waiting_;
+  std::optional<Commit> waiting_;
   StepStatistics steps_;
   Timing accepted_;       // of the newest trajectory that was
   std::string reported_;  // the newest fault's sentence

@@ -21,6 +21,12 @@ Status check(const Config& config) {
                   config.min_thrust_n, weight_n);
     faults.add(text);
   }
+  if (config.stop_acceleration_m_s2 < config.brake_acceleration_m_s2) {
+    std::snprintf(text, sizeof text,
+                  "stop_acceleration_m_s2 (%g) is below brake_acceleration_m_s2 (%g)",
+                  config.stop_acceleration_m_s2, config.brake_acceleration_m_s2);
+    faults.add(text);
+  }
   return faults.status();
 }
 

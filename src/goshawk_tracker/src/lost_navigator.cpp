@@ -73,13 +73,8 @@ void Tracker::land(std::int64_t now_ns) {
   deserted_ = fail(ErrorCode::stage_silent,
                    "the navigator is lost: landing below " + to_text(from.position) + " m");
   if (height_m < 1e-3) return;
-  CommittedTrajectory down;
-  down.id = followed_id();
-  down.trajectory.pieces = {
-      BezierPiece::between(from, to, 15.0 / 8.0 * height_m / config_.land_speed_m_s)};
-  down.start_time_ns = now_ns;
-  down.yaw_rad = yaw_rad_;
-  reference_ = Reference::follow(std::move(down));
+  const double duration_s = 15.0 / 8.0 * height_m / config_.land_speed_m_s;
+  reference_.leave_by(BezierPiece::between(from, to, duration_s), now_ns);
 }
 
 }  // namespace goshawk::tracker

@@ -23,6 +23,7 @@ PositionController::PositionController(const Config& c)
       min_force_m_s2_(c.min_thrust_n / c.mass_kg),
       max_force_m_s2_(c.max_thrust_n / c.mass_kg),
       max_slope_(std::tan(c.max_tilt_rad)),
+      max_position_error_m_(c.max_position_error_m),
       max_feedback_m_s2_(c.max_feedback_m_s2),
       max_body_rate_rad_s_(c.max_body_rate_rad_s),
       position_gain_1_s2_(c.position_xy_1_s2, c.position_xy_1_s2, c.position_z_1_s2),
@@ -42,7 +43,9 @@ AttitudeSetpoint PositionController::step(const RigidBodyState& state, const Tar
   observer_.update(state.velocity_map, acceleration_model, dt_s);
 
   const Vec3 velocity_error = target.now.velocity - state.velocity_map;
-  const Vec3 feedback_now = feedback(target.now.position - state.position_map, velocity_error);
+  const Vec3 position_error =
+      no_longer_than(max_position_error_m_, target.now.position - state.position_map);
+  const Vec3 feedback_now = feedback(position_error, velocity_error);
   const Vec3 drag = drag_1_s_.cwiseProduct(target.ahead.velocity);
   const Vec3 force =
       limited(target.ahead.acceleration + kUp_m_s2 + drag +

@@ -1,7 +1,10 @@
 #include "goshawk/tracker/tracker.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "clock_time.hpp"
 #include "goshawk/tracker/admission.hpp"
@@ -11,6 +14,7 @@ namespace goshawk::tracker {
 namespace {
 
 const Error kNoFault{ErrorCode::ok, ""};
+constexpr double kSayStall_s = 1.0;
 
 }  // namespace
 
@@ -45,30 +49,36 @@ Status Tracker::reconfigure(const Config& config) {
   return success();
 }
 
-Status Tracker::accept(CommittedTrajectory committed, std::int64_t now_ns) {
+Status Tracker::accept(CommittedTrajectory committed, std::int64_t start_ns, std::int64_t now_ns) {
   if (auto status = admit(committed, config_); !status) return status;
-  if (auto status = check_start(committed, now_ns); !status) return status;
-  std::erase_if(queue_, [&](const CommittedTrajectory& queued) {
-    return queued.start_time_ns >= committed.start_time_ns;
-  });
-  queue_.push_back(std::move(committed));
+  auto candidate = Reference::follow(
+      std::make_shared<const CommittedTrajectory>(std::move(committed)), start_ns);
+  if (auto status = check_start(candidate, now_ns); !status) return status;
+  std::erase_if(queue_, [&](const Reference& queued) { return queued.start_ns() >= start_ns; });
+  queue_.push_back(std::move(candidate));
   return success();
 }
 
-Status Tracker::check_start(const CommittedTrajectory& committed, std::int64_t now_ns) const {
+Status Tracker::check_start(const Reference& candidate, std::int64_t now_ns) const {
   const auto refuse = [&](ErrorCode code, const std::string& why) {
-    return fail(code, "trajectory " + std::to_string(committed.id) + " refused: " + why);
+    return fail(code, fmt::format("trajectory {} refused: {}", candidate.committed().id(), why));
   };
-  if (!within_bound(now_ns)) return refuse(ErrorCode::invalid_input, "now is beyond all clocks");
+  if (!within_bound(now_ns)) {
+    return refuse(ErrorCode::invalid_input, "the current time is outside the supported range");
+  }
   if (!has_state_) {
     return refuse(ErrorCode::not_at_start, "there is no odometry yet to tell where the vehicle is");
   }
-  const Reference candidate = Reference::follow(committed);
-  const std::int64_t joins_ns = std::max(committed.start_time_ns, now_ns);
-  if (seconds(committed.start_time_ns, joins_ns) >= candidate.duration_s()) {
+  if (whereabouts_lost_ || seconds(stamp_ns_, now_ns) > config_.odometry_timeout_s) {
+    return refuse(ErrorCode::not_at_start,
+                  "the newest odometry is " + number(seconds(stamp_ns_, now_ns)) +
+                      " s old and does not tell where the vehicle is; plan again once it does");
+  }
+  const std::int64_t joins_ns = std::max(candidate.start_ns(), now_ns);
+  if (seconds(candidate.start_ns(), joins_ns) >= candidate.duration_s()) {
     return refuse(ErrorCode::deadline_exceeded,
                   "it ended " +
-                      number(seconds(committed.start_time_ns, now_ns) - candidate.duration_s()) +
+                      number(seconds(candidate.start_ns(), now_ns) - candidate.duration_s()) +
                       " s ago; commit it with a later start");
   }
   const FlatState joint = candidate.at(joins_ns);
@@ -79,7 +89,7 @@ Status Tracker::check_start(const CommittedTrajectory& committed, std::int64_t n
   const FlatState present = reference_at(joins_ns);
   if (is_near(present.position, present.velocity)) return success();
   // Where the vehicle is now tells where it will be only when it joins now, or hovers.
-  const bool joins_now = committed.start_time_ns <= now_ns;
+  const bool joins_now = candidate.start_ns() <= now_ns;
   const Vec3 vehicle =
       state_.position_map +
       (joins_now ? std::clamp(seconds(stamp_ns_, now_ns), 0.0, config_.odometry_timeout_s) : 0.0) *
@@ -102,11 +112,18 @@ void Tracker::brake(std::int64_t now_ns) {
 
 Result<AttitudeSetpoint> Tracker::step(const RigidBodyState& state, std::int64_t stamp_ns,
                                        std::int64_t now_ns) {
+  if (within_bound(now_ns)) notice_stall(now_ns);
   if (auto status = check_odometry(state, stamp_ns, now_ns); !status) {
     refused_ = status.error();
     return status.error();
   }
+  if (seconds(stalled_ns_, now_ns) > kSayStall_s) stalled_ = kNoFault;
   take_in(state, stamp_ns, now_ns);
+  if (auto status = check_agreement(now_ns); !status) {
+    whereabouts_lost_ = true;
+    refused_ = status.error();
+    return status.error();
+  }
   switch_trajectories(now_ns);
   watch_error(now_ns);
   watch_navigator(now_ns);
@@ -127,7 +144,8 @@ Status Tracker::check_odometry(const RigidBodyState& state, std::int64_t stamp_n
   const auto invalid = [](const std::string& why) {
     return fail(ErrorCode::invalid_input, "odometry refused: " + why);
   };
-  if (!within_bound(stamp_ns) || !within_bound(now_ns)) return invalid("its time is no time");
+  if (!within_bound(stamp_ns) || !within_bound(now_ns))
+    return invalid("its timestamp is outside the supported range");
   if (!state.is_finite()) return invalid("a number in it is not finite");
   if (!(std::abs(state.q_map_base.norm() - 1.0) <= 1e-3)) {
     return invalid("its quaternion has length " + number(state.q_map_base.norm()) + ", not one");
@@ -152,93 +170,57 @@ Status Tracker::check_odometry(const RigidBodyState& state, std::int64_t stamp_n
 // The state, and what a first one, a restarted clock, a gap or a jump mean for the reference.
 void Tracker::take_in(const RigidBodyState& state, std::int64_t stamp_ns, std::int64_t now_ns) {
   const bool restarted = has_state_ && stamp_ns < stamp_ns_;
-  if (!has_state_ || restarted) {
+  const bool first = !has_state_ || restarted;
+  if (first) {
     hold_here(state);
+    controller_.reset();
     first_yaw_rad_ = yaw_rad_ = yaw_of(state.q_map_base);
-    now_ns_ = stamp_ns;
-    stamp_ns_ = stamp_ns;
-    lost_ = refused_ = deserted_ = kNoFault;
+    now_ns_ = stamp_ns_ = stamp_ns;
+    lost_ = refused_ = stalled_ = deserted_ = kNoFault;
     heard_ns_.reset();
+    jumped_ns_.reset();
+    disputed_ns_.reset();
   } else {
     watch_odometry(stamp_ns);  // a gap behind us
     refused_ = kNoFault;
-    const double dt = seconds(stamp_ns_, stamp_ns);
-    const double speed = std::max(state.velocity_map.norm(), state_.velocity_map.norm());
-    const double moved = (state.position_map - state_.position_map).norm();
-    if (moved > speed * dt + config_.max_jump_m) {
-      lose(now_ns, "odometry jumped by " + number(moved) + " m; holding where it says to be now");
-      // The vehicle is where it was, but its coordinates are not: no path in them can be trusted.
-      hold_here(state);
-    }
   }
+  const double jump = first ? 0.0 : jump_m(state, stamp_ns);
   since_last_s_ = seconds(stamp_ns_, stamp_ns);
+  const std::int64_t last_stamp_ns = std::exchange(stamp_ns_, stamp_ns);
   has_state_ = true;
   state_ = state;
   state_.q_map_base.normalize();
-  stamp_ns_ = stamp_ns;
+  if (jump > config_.max_jump_m) {
+    stop_after_jump(jump, now_ns);
+  } else if (whereabouts_lost_ && check_agreement(now_ns)) {
+    find_again(last_stamp_ns, now_ns);
+  }
 }
 
 void Tracker::hold_here(const RigidBodyState& state) {
   reference_ = Reference::hold(state.position_map);
   queue_.clear();
-  controller_.reset();
-  landing_ = false;
+  landing_ = whereabouts_lost_ = false;
+  forget_errors();
+}
+
+void Tracker::forget_errors() {
   squared_error_m2_ = max_error_m_ = 0.0;
   samples_ = 0;
 }
 
 void Tracker::switch_trajectories(std::int64_t now_ns) {
-  while (!queue_.empty() && queue_.front().start_time_ns <= now_ns) {
-    reference_ = Reference::follow(std::move(queue_.front()));
+  while (!queue_.empty() && queue_.front().start_ns() <= now_ns) {
+    reference_ = std::move(queue_.front());
     queue_.erase(queue_.begin());
     lost_ = kNoFault;
     landing_ = false;
-    squared_error_m2_ = max_error_m_ = 0.0;
-    samples_ = 0;
+    forget_errors();
   }
-}
-
-void Tracker::watch_error(std::int64_t now_ns) {
-  error_m_ = (state_.position_map - reference_.at(stamp_ns_).position).norm();
-  squared_error_m2_ += error_m_ * error_m_;
-  max_error_m_ = std::max(max_error_m_, error_m_);
-  ++samples_;
-  if (lost_.code != ErrorCode::ok || error_m_ <= config_.error_allowance_m) return;
-  lose(now_ns, "the vehicle is " + number(error_m_) +
-                   " m from where it should be, more than the allowance of " +
-                   number(config_.error_allowance_m) +
-                   " m: stopping on the path; plan again from there");
-}
-
-// Whatever is lost, the reference comes to rest on its path: that much of it is known to be safe.
-// At rest nothing is lost for long: the fault lasts as long as its cause.
-void Tracker::lose(std::int64_t now_ns, const std::string& why) {
-  const Error error = fail(ErrorCode::tracking_lost, why);
-  if (reference_.at_rest(now_ns) && queue_.empty()) {
-    refused_ = error;
-    return;
-  }
-  lost_ = error;
-  lost_id_ = reference_.at_rest(now_ns) ? queue_.front().id : followed_id();
-  if (!landing_) brake(now_ns);
 }
 
 std::uint64_t Tracker::followed_id() const {
-  return reference_.has_trajectory() ? reference_.committed().id : 0;
-}
-
-void Tracker::watch(std::int64_t now_ns) {
-  if (!within_bound(now_ns) || !has_state_) return;
-  watch_odometry(now_ns);
-  watch_navigator(now_ns);
-}
-
-void Tracker::watch_odometry(std::int64_t now_ns) {
-  const double age_s = seconds(stamp_ns_, now_ns);
-  if (age_s <= config_.odometry_timeout_s || lost_.code != ErrorCode::ok) return;
-  lose(now_ns, "no odometry for " + number(age_s) + " s, more than " +
-                   number(config_.odometry_timeout_s) +
-                   " s: no command goes out, the vehicle holds by itself; is its source alive?");
+  return reference_.has_trajectory() ? reference_.committed().id() : 0;
 }
 
 double Tracker::wanted_yaw(std::int64_t now_ns) const {
@@ -257,10 +239,9 @@ double Tracker::turn(std::int64_t now_ns) {
 }
 
 FlatState Tracker::reference_at(std::int64_t time_ns) const {
-  const auto next = std::find_if(queue_.rbegin(), queue_.rend(), [&](const auto& queued) {
-    return queued.start_time_ns <= time_ns;
-  });
-  return next == queue_.rend() ? reference_.at(time_ns) : Reference::follow(*next).at(time_ns);
+  const auto next = std::find_if(queue_.rbegin(), queue_.rend(),
+                                 [&](const auto& queued) { return queued.start_ns() <= time_ns; });
+  return next == queue_.rend() ? reference_.at(time_ns) : next->at(time_ns);
 }
 
 TrackingStatus Tracker::status() const {
@@ -268,9 +249,9 @@ TrackingStatus Tracker::status() const {
   if (!has_state_) return s;
   s.mode = landing_                      ? Mode::land
            : reference_.at_rest(now_ns_) ? Mode::hold
-           : reference_.braking()        ? Mode::brake
-                                         : Mode::follow;
-  for (const Error* fault : {&deserted_, &refused_, &lost_}) {
+           : reference_.follows()        ? Mode::follow
+                                         : Mode::brake;
+  for (const Error* fault : {&deserted_, &refused_, &stalled_, &lost_}) {
     if (fault->code != ErrorCode::ok) s.fault = *fault;
   }
   if (landing_) s.fault = deserted_;

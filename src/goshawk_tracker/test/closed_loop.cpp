@@ -6,6 +6,12 @@
 #include <cmath>
 
 namespace goshawk::tracker {
+namespace {
+
+constexpr std::size_t kSocketHolds = 100;  // messages; later ones are dropped
+
+}  // namespace
+
 ClosedLoop::ClosedLoop(const Config& tracker_config, const simulator::Config& vehicle_config,
                        Link with_link)
     : vehicle(simulator::Quadrotor::create(vehicle_config).value()),
@@ -25,17 +31,12 @@ void ClosedLoop::exchange() {
   const std::int64_t now = vehicle.time_ns();
   if (now >= next_odometry_ns_) {
     next_odometry_ns_ = now + (link.gap_ns ? link.gap_ns() : link.period_ns);
-    if (watched) tracker.watch(now);
-    if (connected) {
-      auto measured = vehicle.measure();
-      if (link.spoil) link.spoil(measured.state);
-      const auto command =
-          tracker.step(measured.state, measured.time_ns, now + link.odometry_delay_ns);
-      if (!command) {
-        last_error = command.error();
-      } else if (!link.drop || !link.drop()) {
-        arrivals_.push_back({now + link.odometry_delay_ns + link.command_delay_ns, *command});
-      }
+    if (now < stalled_until_ns) {
+      if (kept_.size() < kSocketHolds) kept_.push_back(vehicle.measure());
+    } else {
+      if (watched) tracker.watch(now);
+      for (; !kept_.empty(); kept_.pop_front()) take(kept_.front(), now);
+      if (connected) take(vehicle.measure(), now);
     }
   }
   for (; !arrivals_.empty() && arrivals_.front().time_ns <= now; arrivals_.pop_front()) {
@@ -43,7 +44,18 @@ void ClosedLoop::exchange() {
   }
 }
 
-ClosedLoop::Errors ClosedLoop::fly(CommittedTrajectory committed, double rest_s) {
+void ClosedLoop::take(const simulator::Measurement& measured, std::int64_t now) {
+  RigidBodyState state = measured.state;
+  if (link.spoil) link.spoil(state);
+  const auto command = tracker.step(state, measured.time_ns, now + link.odometry_delay_ns);
+  if (!command) {
+    last_error = command.error();
+  } else if (!link.drop || !link.drop()) {
+    arrivals_.push_back({now + link.odometry_delay_ns + link.command_delay_ns, *command});
+  }
+}
+
+ClosedLoop::Errors ClosedLoop::fly(Draft committed, double rest_s) {
   const auto accepted = tracker.accept(committed, vehicle.time_ns());
   EXPECT_TRUE(accepted) << accepted.error().message;
   const double duration = committed.trajectory.duration_s();

@@ -2,6 +2,7 @@
 
 #include <deque>
 #include <functional>
+#include <string>
 
 #include "goshawk/simulator/quadrotor.hpp"
 #include "goshawk/tracker/tracker.hpp"
@@ -21,6 +22,16 @@ struct Link {
   std::function<void(RigidBodyState&)> spoil;  // changes what odometry says, where set
 };
 
+/// Quintics are steep at their ends, so that their hulls reach beyond the tilt that is flown; their
+/// curves do not.
+inline Config config_for(const std::string& controller) {
+  Config config;
+  config.controller = controller;
+  config.max_tilt_rad = 1.2;
+  config.min_thrust_n = 0.5;
+  return config;
+}
+
 /// Tracker and simulated vehicle, joined by a link with delays. Time in whole milliseconds.
 class ClosedLoop {
  public:
@@ -35,7 +46,7 @@ class ClosedLoop {
   /// Runs until the given time; `each` is called every millisecond.
   void run_until(std::int64_t end_ns, const std::function<void()>& each = {});
   /// Accepts the trajectory, flies it, and `rest_s` beyond its end.
-  Errors fly(CommittedTrajectory committed, double rest_s = 1.0);
+  Errors fly(Draft committed, double rest_s = 1.0);
 
   simulator::Quadrotor vehicle;
   Tracker tracker;
@@ -43,6 +54,8 @@ class ClosedLoop {
   int failsafe_ms = 0;
   bool connected = true;  // odometry is taken and commands are sent
   bool watched = true;    // the tracker is told of the time, odometry or not
+  /// Until then the tracker's process does not run; its socket keeps what comes first.
+  std::int64_t stalled_until_ns = 0;
   Link link;
 
  private:
@@ -51,9 +64,11 @@ class ClosedLoop {
     AttitudeSetpoint command;
   };
   void exchange();
+  void take(const simulator::Measurement& measured, std::int64_t now_ns);
 
   std::int64_t next_odometry_ns_ = 0;
   std::deque<Arrival> arrivals_;
+  std::deque<simulator::Measurement> kept_;
 };
 
 }  // namespace goshawk::tracker

@@ -10,16 +10,6 @@
 namespace goshawk::tracker {
 namespace {
 
-// Quintics are steep at their ends, so that their hulls reach beyond the tilt that is flown;
-// their curves do not.
-Config config_for(const std::string& controller) {
-  Config config;
-  config.controller = controller;
-  config.max_tilt_rad = 1.2;
-  config.min_thrust_n = 0.5;
-  return config;
-}
-
 struct Worst {
   double rms_m = 0.0;
   double max_m = 0.0;
@@ -104,16 +94,16 @@ TEST_P(ClosedLoopTest, TurnsAlongACurveOfYaw) {
   loop.run_until(kSecond);
   auto committed = straight_line({3, 0, 1}, {3, 6, 2}, 6.0);
   committed.start_time_ns = loop.vehicle.time_ns();
-  committed.yaw_step_s = 0.05;
+  committed.yaw_curve = YawCurve{.step_s = 0.05, .points_rad = {}};
   for (int k = -1; k <= 120; ++k) {  // to and fro, at 0.8 rad/s at the most
-    committed.yaw_points_rad.push_back(0.8 * (1.0 - std::cos(0.05 * std::max(k, 0))));
+    committed.yaw_curve->points_rad.push_back(0.8 * (1.0 - std::cos(0.05 * std::max(k, 0))));
   }
   ASSERT_TRUE(loop.tracker.accept(committed, loop.vehicle.time_ns()));
   double worst = 0.0;
   loop.run_until(committed.start_time_ns + 6 * kSecond, [&] {
     const double t = double(loop.vehicle.time_ns() - committed.start_time_ns) * 1e-9;
-    worst =
-        std::max(worst, std::abs(yaw_of(loop.vehicle.state().q_map_base) - committed.yaw_at(t)));
+    worst = std::max(
+        worst, std::abs(yaw_of(loop.vehicle.state().q_map_base) - committed.yaw_curve->yaw_rad(t)));
   });
   RecordProperty("worst_yaw_error_rad", std::to_string(worst));
   EXPECT_LT(worst, 0.05);
@@ -148,7 +138,7 @@ double overshoot_m(const Config& config, const simulator::Config& vehicle, const
 // Feedback, tilt and thrust are at their bounds for most of the way. A double integrator under
 // bounded force overshoots by itself; what is learnt meanwhile must add nothing to that.
 TEST_P(ClosedLoopTest, AStepOfFiveMetresSaturatesAndDoesNotWindUp) {
-  config_.max_jump_m = config_.error_allowance_m = 10.0;
+  config_.max_jump_m = config_.error_allowance_m = config_.max_position_error_m = 10.0;
   config_.max_tilt_rad = 0.4;
   config_.max_thrust_n = 13.0;
   auto plain = config_;
@@ -161,6 +151,20 @@ TEST_P(ClosedLoopTest, AStepOfFiveMetresSaturatesAndDoesNotWindUp) {
   }
 }
 
+// Whatever sent the vehicle that far off: it comes back, and no faster than its error is worth.
+TEST_P(ClosedLoopTest, ALargeErrorIsCaughtUpWithSlowly) {
+  config_.max_jump_m = config_.error_allowance_m = 10.0;
+  ClosedLoop loop(config_, vehicle_);
+  EXPECT_TRUE(loop.tracker.step(RigidBodyState{}, 0));
+  EXPECT_TRUE(loop.vehicle.reset({4, 0, 0}, 0.0));
+  double top_m_s = 0.0;
+  loop.run_until(30 * kSecond,
+                 [&] { top_m_s = std::max(top_m_s, loop.vehicle.state().velocity_map.norm()); });
+  EXPECT_LT(top_m_s, 1.2 * config_.max_position_error_m * config_.position_xy_1_s2 /
+                         config_.velocity_xy_1_s);
+  EXPECT_LT(loop.vehicle.state().position_map.norm(), 0.01);
+}
+
 TEST_P(ClosedLoopTest, AVehicleHeavierThanConfiguredIsStillTracked) {
   vehicle_.vehicle.mass_kg = 1.1;
   const auto worst = fly_many(config_, vehicle_);
@@ -169,7 +173,7 @@ TEST_P(ClosedLoopTest, AVehicleHeavierThanConfiguredIsStillTracked) {
 }
 
 TEST_P(ClosedLoopTest, AStepOfOneMetreSettlesWithoutMuchOvershoot) {
-  config_.max_jump_m = config_.error_allowance_m = 2.0;
+  config_.max_jump_m = config_.error_allowance_m = config_.max_position_error_m = 2.0;
   ClosedLoop loop(config_, vehicle_);
   RigidBodyState elsewhere;  // the tracker takes the origin as its place; the vehicle is 1 m away
   ASSERT_TRUE(loop.tracker.step(elsewhere, 0));

@@ -55,13 +55,26 @@ TEST(PositionController, ErrorsActWithTheirGains) {
   const Config config = without_observer();
   PositionController controller(config);
   RigidBodyState state;
-  state.position_map = {0.1, 0, 0.05};
+  state.position_map = {0.08, 0, 0.05};
   state.velocity_map = {0, 0.2, 0};
   const auto out = controller.step(state, {}, 0.004);
   const Vec3 force = out.thrust_n / config.mass_kg * (out.q_map_base * Vec3::UnitZ());
-  EXPECT_NEAR(force.x(), -config.position_xy_1_s2 * 0.1, 1e-9);
+  EXPECT_NEAR(force.x(), -config.position_xy_1_s2 * 0.08, 1e-9);
   EXPECT_NEAR(force.y(), -config.velocity_xy_1_s * 0.2, 1e-9);
   EXPECT_NEAR(force.z() - kGravity_m_s2, -config.position_z_1_s2 * 0.05, 1e-9);
+}
+
+TEST(PositionController, APositionErrorActsUpToItsBound) {
+  Config config = without_observer();
+  config.max_position_error_m = 0.3;
+  for (const double error_m : {0.3, 1.0, 1e6}) {
+    PositionController controller(config);
+    RigidBodyState state;
+    state.position_map = {error_m, 0, 0};
+    const auto out = controller.step(state, {}, 0.004);
+    const Vec3 force = out.thrust_n / config.mass_kg * (out.q_map_base * Vec3::UnitZ());
+    EXPECT_NEAR(force.x(), -config.position_xy_1_s2 * 0.3, 1e-9) << error_m;
+  }
 }
 
 TEST(PositionController, WhateverTheErrorThrustAndTiltStayWithinBoundsAndFinite) {

@@ -37,8 +37,8 @@ void follow(Tracker& tracker, double from_s, double to_s) {
   }
 }
 
-CommittedTrajectory line(std::uint64_t id, const Vec3& from, const Vec3& to, double start_s,
-                         double duration_s = 4.0) {
+Draft line(std::uint64_t id, const Vec3& from, const Vec3& to, double start_s,
+           double duration_s = 4.0) {
   auto committed = straight_line(from, to, duration_s);
   committed.id = id;
   committed.start_time_ns = ns(start_s);
@@ -46,9 +46,8 @@ CommittedTrajectory line(std::uint64_t id, const Vec3& from, const Vec3& to, dou
 }
 
 // What remains of `before` after t_s, bent towards another end.
-CommittedTrajectory replanned(std::uint64_t id, const CommittedTrajectory& before, double t_s,
-                              const Vec3& end) {
-  CommittedTrajectory committed;
+Draft replanned(std::uint64_t id, const Draft& before, double t_s, const Vec3& end) {
+  Draft committed;
   committed.id = id;
   committed.trajectory.pieces = {
       BezierPiece::between(before.trajectory.sample(t_s), {.position = end}, 5.0)};
@@ -61,11 +60,11 @@ TEST(Tracker, IsIdleBeforeOdometryAndThenHoldsWhereItFirstWas) {
   auto tracker = make();
   EXPECT_EQ(tracker.status().mode, Mode::idle);
   ASSERT_TRUE(tracker.step(at({1, 2, 3}), ns(1.0)));
-  ASSERT_TRUE(tracker.step(at({1.1, 2, 3}), ns(1.1)));
+  ASSERT_TRUE(tracker.step(at({1.04, 2, 3}), ns(1.1)));
   const auto status = tracker.status();
   EXPECT_EQ(status.mode, Mode::hold);
   EXPECT_EQ(status.reference.position, Vec3(1, 2, 3));
-  EXPECT_NEAR(status.error_m, 0.1, 1e-12);
+  EXPECT_NEAR(status.error_m, 0.04, 1e-12);
   EXPECT_EQ(status.trajectory_id, 0U);
 }
 
@@ -148,7 +147,7 @@ TEST(Tracker, RefusesWhatDoesNotStartWhereTheVehicleIsAndFliesOn) {
   ASSERT_TRUE(tracker.accept(flown, 0));
   follow(tracker, 0.01, 1.0);
 
-  const auto refused = [&](CommittedTrajectory committed, ErrorCode code, const char* sentence) {
+  const auto refused = [&](Draft committed, ErrorCode code, const char* sentence) {
     const auto status = tracker.accept(std::move(committed), ns(1.0));
     EXPECT_EQ(status.code(), code);
     if (!status) {
@@ -161,9 +160,6 @@ TEST(Tracker, RefusesWhatDoesNotStartWhereTheVehicleIsAndFliesOn) {
   refused(line(4, flown.trajectory.sample(2.0).position, {4, 0, 1}, 2.0), ErrorCode::not_at_start,
           "m/s");
   refused(line(5, {0, 0, 1}, {4, 0, 1}, -10.0), ErrorCode::deadline_exceeded, "ended 7 s ago");
-  auto uncertified = replanned(6, flown, 1.5, {4, 1, 1});
-  uncertified.limits.v_max_m_s = 0.5;
-  refused(uncertified, ErrorCode::not_certified, "velocity");
   auto no_clock = replanned(7, flown, 1.5, {4, 1, 1});
   EXPECT_EQ(tracker.accept(no_clock, std::numeric_limits<std::int64_t>::max()).code(),
             ErrorCode::invalid_input);
@@ -206,7 +202,31 @@ TEST(Tracker, BadOdometryGivesAnErrorAndNeverACommand) {
   EXPECT_EQ(tracker.step(state, std::numeric_limits<std::int64_t>::min(), 0).code(),
             ErrorCode::invalid_input);
   ASSERT_TRUE(tracker.step(state, ns(10.25)));
+  ASSERT_TRUE(tracker.step(state, ns(10.30)));
+  EXPECT_EQ(tracker.status().fault.code, ErrorCode::process_stalled);  // from 10.01 to 10.2
+  for (double t = 10.35; t < 11.4; t += 0.05) ASSERT_TRUE(tracker.step(state, ns(t)));
   EXPECT_EQ(tracker.status().fault.code, ErrorCode::ok);
+}
+
+TEST(Tracker, AfterAPauseOfItsOwnItTakesNothingUntilItKnowsWhereTheVehicleIs) {
+  auto tracker = make();
+  ASSERT_TRUE(tracker.step(at({0, 0, 1}), 0));
+  const auto first = line(1, {0, 0, 1}, {4, 0, 1}, 0.0);
+  ASSERT_TRUE(tracker.accept(first, 0));
+  follow(tracker, 0.01, 1.0);
+  ASSERT_TRUE(tracker.accept(replanned(2, first, 1.5, {4, 2, 1}), ns(1.0)));
+  tracker.watch(ns(1.6));  // the second one's time has come meanwhile
+  EXPECT_EQ(tracker.status().fault.code, ErrorCode::process_stalled);
+  EXPECT_EQ(tracker.status().lost_trajectory_id, 1U);
+  EXPECT_EQ(tracker.status().queued, 0);
+  const auto status = tracker.accept(replanned(3, first, 1.6, {4, 2, 1}), ns(1.6));
+  EXPECT_EQ(status.code(), ErrorCode::not_at_start);
+  // It braked by itself meanwhile: it is held there, not sent to where it should have been.
+  const Vec3 here(1.3, 0, 1);
+  ASSERT_TRUE(tracker.step(at(here), ns(1.61)));
+  for (double t = 1.62; t < 3.0; t += 0.01) ASSERT_TRUE(tracker.step(at(here), ns(t)));
+  EXPECT_EQ(tracker.status().mode, Mode::hold);
+  EXPECT_LT((tracker.status().reference.position - here).norm(), 0.005);
 }
 
 TEST(Tracker, TooLargeAnErrorStopsTheReferenceOnItsPathAndIsReported) {
@@ -254,7 +274,7 @@ TEST(Tracker, OdometryThatJumpsIsReportedAndTheVehicleStaysWhereItIs) {
   follow(tracker, 0.01, 0.5);
   const auto command = tracker.step(at({5, 5, 1}), ns(0.51));
   ASSERT_TRUE(command);
-  EXPECT_NEAR(command->thrust_n, kGravity_m_s2, 1e-9);  // no rush to another place
+  EXPECT_NEAR(command->thrust_n, kGravity_m_s2, 0.1);  // no rush to another place
   EXPECT_EQ(tracker.status().mode, Mode::hold);
   EXPECT_EQ(tracker.status().fault.code, ErrorCode::tracking_lost);
   EXPECT_THAT(tracker.status().fault.message, HasSubstr("jumped"));
@@ -297,12 +317,12 @@ TEST(Tracker, TurnsToThePlansYawAtABoundedRateOrKeepsItsOwn) {
 }
 
 // A curve that turns by 0.8 rad/s for two seconds, and then holds.
-CommittedTrajectory turning_line(double start_yaw) {
+Draft turning_line(double start_yaw) {
   auto committed = line(1, {0, 0, 1}, {2, 0, 1}, 0.0);
-  committed.yaw_step_s = 0.1;
+  committed.yaw_curve = YawCurve{.step_s = 0.1, .points_rad = {}};
   for (int k = -1; k <= 40; ++k) {
     const double t = std::clamp(0.1 * k, 0.0, 2.0);
-    committed.yaw_points_rad.push_back(start_yaw + 0.8 * t);
+    committed.yaw_curve->points_rad.push_back(start_yaw + 0.8 * t);
   }
   return committed;
 }
@@ -325,28 +345,11 @@ TEST(Tracker, FollowsACurveOfYawWithinItsRate) {
       // It begins elsewhere than the vehicle looks: caught up with by what the rate leaves.
       const bool caught_up = t > start_yaw / (config.max_yaw_rate_rad_s - 0.8) + 0.1;
       if (caught_up) {
-        EXPECT_NEAR(yaw, committed.yaw_at(t), 1e-6) << t;
+        EXPECT_NEAR(yaw, committed.yaw_curve->yaw_rad(t), 1e-6) << t;
       }
       last = yaw;
     }
     EXPECT_NEAR(last, start_yaw + 1.6, 1e-6);
-  }
-}
-
-TEST(Tracker, RefusesACurveOfYawThatIsNone) {
-  auto tracker = make();
-  ASSERT_TRUE(tracker.step(at({0, 0, 1}), 0));
-  auto no_step = turning_line(0.0);
-  no_step.yaw_step_s = 0.0;
-  auto short_curve = turning_line(0.0);
-  short_curve.yaw_points_rad.resize(2);
-  auto not_finite = turning_line(0.0);
-  not_finite.yaw_points_rad[5] = std::numeric_limits<double>::quiet_NaN();
-  for (const auto& bad : {no_step, short_curve, not_finite}) {
-    const auto status = tracker.accept(bad, 0);
-    ASSERT_FALSE(status);
-    EXPECT_EQ(status.code(), ErrorCode::invalid_input);
-    EXPECT_THAT(status.error().message, HasSubstr("yaw"));
   }
 }
 

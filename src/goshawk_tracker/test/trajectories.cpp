@@ -13,7 +13,21 @@ double largest(const Points& points) {
 
 }  // namespace
 
-void certify_as_is(CommittedTrajectory& c) {
+Draft::operator CommittedTrajectory() const {
+  auto certified = certify(trajectory, polytopes, limits, start, goal);
+  return CommittedTrajectory::make({.id = id,
+                                    .nominal = std::move(certified).value(),
+                                    .start_time_ns = start_time_ns,
+                                    .yaw_rad = yaw_rad,
+                                    .yaw_curve = yaw_curve})
+      .value();
+}
+
+std::shared_ptr<const CommittedTrajectory> Draft::shared() const {
+  return std::make_shared<const CommittedTrajectory>(*this);
+}
+
+void certify_as_is(Draft& c) {
   c.polytopes = {Polytope::box(Vec3::Constant(-100.0), Vec3::Constant(100.0))};
   c.limits = {0.0, 0.0};
   for (const auto& piece : c.trajectory.pieces) {
@@ -24,8 +38,8 @@ void certify_as_is(CommittedTrajectory& c) {
   c.goal = c.trajectory.pieces.back().sample(c.trajectory.pieces.back().duration_s);
 }
 
-CommittedTrajectory random_trajectory(Random& random, const Vec3& start, int pieces,
-                                      double v_max_m_s, double a_max_m_s2) {
+Draft random_trajectory(Random& random, const Vec3& start, int pieces, double v_max_m_s,
+                        double a_max_m_s2) {
   std::vector<FlatState> joints(std::size_t(pieces) + 1);
   std::vector<double> durations;
   joints[0].position = start;
@@ -53,7 +67,7 @@ CommittedTrajectory random_trajectory(Random& random, const Vec3& start, int pie
     return trajectory;
   };
   const auto peaks = build(1.0).peaks();
-  CommittedTrajectory c;
+  Draft c;
   c.id = random.next();
   c.trajectory =
       build(std::max(peaks.speed_m_s / v_max_m_s, std::sqrt(peaks.acceleration_m_s2 / a_max_m_s2)));
@@ -61,8 +75,8 @@ CommittedTrajectory random_trajectory(Random& random, const Vec3& start, int pie
   return c;
 }
 
-CommittedTrajectory straight_line(const Vec3& start, const Vec3& end, double duration_s) {
-  CommittedTrajectory c;
+Draft straight_line(const Vec3& start, const Vec3& end, double duration_s) {
+  Draft c;
   c.id = 1;
   c.trajectory.pieces = {BezierPiece::between({.position = start}, {.position = end}, duration_s)};
   certify_as_is(c);

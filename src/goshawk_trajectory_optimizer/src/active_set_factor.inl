@@ -1,13 +1,16 @@
-// The Hessian of the jerk for one axis, block-tridiagonal with 3 x 3 blocks and the same for all
-// three. Included by active_set_kernels.inl.
+// The Hessian H of the jerk for one axis, block-tridiagonal with 3 x 3 blocks and the same for all
+// three: H_kk = Q_(k-1) (second, second) + Q_k (first, first), H_(k,k-1) = Q_(k-1) (second, first),
+// Q_k of piece k between knots k and k + 1. Included by active_set_kernels.inl.
 
-GOSHAWK_INLINE Lanes point_at(const Lanes* x, int joint, const double* map) {
-  const Lanes* v = x + 3 * joint;
+// y = map (p, v, a of `knot`, p, v, a of the next)
+
+GOSHAWK_INLINE Lanes point_at(const Lanes* x, int knot, const double* map) {
+  const Lanes* v = x + 3 * knot;
   return map[0] * v[0] + map[1] * v[1] + map[2] * v[2] + map[3] * v[3] + map[4] * v[4] +
          map[5] * v[5];
 }
 
-// to = inverse of a symmetric positive definite matrix. @return false where it is not
+// to = a^-1 by L D L', a symmetric 3 x 3. @return false if a is not positive definite
 GOSHAWK_INLINE bool invert(const double* a, double* to) {
   const double d0 = a[0];
   if (!(d0 > 0.0 && d0 < 1e300)) return false;
@@ -31,7 +34,7 @@ GOSHAWK_INLINE bool invert(const double* a, double* to) {
   return true;
 }
 
-// to = a b, with a or b transposed as told
+// to = a b, or a' b
 template <bool TransposeA>
 GOSHAWK_INLINE void product(const double* a, const double* b, double* to) {
   for (int i = 0; i < 3; ++i) {
@@ -46,7 +49,8 @@ GOSHAWK_INLINE void product(const double* a, const double* b, double* to) {
 
 void solve(ActiveSetState& s, int from);
 
-// x without constraints: H x = -(what the ends pull).
+// free = argmin without constraints: H x = -(Q_0 (second, first) x_start + Q_last (first, second)
+// x_goal)
 void find_free_minimum(ActiveSetState& s) {
   for (int i = 3; i < 3 * s.last; ++i) s.work[i] = Lanes{};
   for (int b = 0; b < 3; ++b) s.work[b] = s.work[3 * s.last + b] = Lanes{};
@@ -69,11 +73,12 @@ void find_free_minimum(ActiveSetState& s) {
   for (int i = 3; i < 3 * s.last; ++i) s.free[i] = s.work[i];
 }
 
+// H = L D L' by blocks: L_k = H_(k,k-1) D_(k-1)^-1, D_k = H_kk - L_k D_(k-1) L_k'.
 bool factor(ActiveSetState& s) {
   for (int k = 1; k < s.last; ++k) {
     const double* before = s.jerk + 36 * (k - 1);
     const double* after = s.jerk + 36 * k;
-    JointFactor& f = s.factors[k];
+    KnotFactor& f = s.factors[k];
     double d[9], b[9];
     for (int r = 0; r < 3; ++r) {
       for (int c = 0; c < 3; ++c) {
@@ -97,7 +102,7 @@ bool factor(ActiveSetState& s) {
   return true;
 }
 
-// map' H^-1 map of a point of joints k and k + 1
+// map' H^-1 map of a point of knots k and k + 1: how far it gives way to a force of 1
 GOSHAWK_INLINE double variance(const ActiveSetState& s, int k, const double* map) {
   double total = 0.0;
   const auto add = [&](const double* block, const double* left, const double* right, double by) {
@@ -115,12 +120,14 @@ GOSHAWK_INLINE double weight_of(double variance) {
   return variance > 0.0 && variance < 1e300 ? 1.0 / __builtin_sqrt(variance) : 1.0;
 }
 
+// Weights 1 / sqrt(map' H^-1 map) of all points. The blocks of H^-1 on and beside the diagonal, from
+// the last knot back: V_k = D_k^-1 + L' V_(k+1) L, C_k = -V_(k+1) L with L = L_(k+1).
 void weigh(ActiveSetState& s) {
   for (int k = s.last - 1; k >= 1; --k) {
-    JointFactor& f = s.factors[k];
+    KnotFactor& f = s.factors[k];
     for (int i = 0; i < 9; ++i) f.variance[i] = f.inverse[i];
     if (k + 1 == s.last) continue;
-    const JointFactor& next = s.factors[k + 1];
+    const KnotFactor& next = s.factors[k + 1];
     product<false>(next.variance, next.below, f.covariance);
     double add[9];
     product<true>(next.below, f.covariance, add);
@@ -132,7 +139,7 @@ void weigh(ActiveSetState& s) {
   for (int p = 0; p < s.point_count; ++p) {
     PricedPoint& point = s.points[p];
     const double map[6] = {point.map[0], point.map[1], point.map[2], 0.0, 0.0, 0.0};
-    point.weight = weight_of(variance(s, point.joint, map));
+    point.weight = weight_of(variance(s, point.knot, map));
   }
   for (PricedSet& set : s.limits) {
     if (set.pieces == nullptr) continue;

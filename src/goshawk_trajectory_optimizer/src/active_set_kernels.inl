@@ -1,10 +1,18 @@
 // The steps of the dual active-set method over an ActiveSetState. Included by one source for each
 // instruction set, inside an unnamed namespace: nothing here may be shared between them.
+//
+// The problem is: minimise 1/2 x' H x + h' x subject to a_i' x <= b_i. For a working set W of
+// constraints that hold with equality, rows of A, multipliers u >= 0:
+//
+//   x = free - H^-1 A' u,   free = -H^-1 h,   M' M = (A H^-1 A')^-1
+//
+// As the multiplier of one more constraint a grows by t, those of W change by -t change with
+// change = M' M A H^-1 a, and its violation by -t slope with slope = a' H^-1 (a - A' change).
 
 #include "active_set_factor.inl"
 #include "active_set_pricing.inl"
 
-// work = H^-1 work, which is zero before joint `from`.
+// work = H^-1 work = L'^-1 D^-1 L^-1 work, which is zero before knot `from`.
 void solve(ActiveSetState& s, int from) {
   for (int k = from + 1; k < s.last; ++k) {
     Lanes* v = s.work + 3 * k;
@@ -29,8 +37,8 @@ GOSHAWK_INLINE void clear_work(ActiveSetState& s) {
 }
 
 // work += factor * the gradient of a constraint
-GOSHAWK_INLINE void scatter(ActiveSetState& s, const HalfSpace& a, double factor) {
-  Lanes* v = s.work + 3 * a.joint;
+GOSHAWK_INLINE void scatter(ActiveSetState& s, const Constraint& a, double factor) {
+  Lanes* v = s.work + 3 * a.knot;
   const Lanes n = factor * a.normal;
   for (int b = 0; b < 6; ++b) v[b] += a.map[b] * n;
 }
@@ -48,20 +56,22 @@ void pull_back(ActiveSetState& s) {
   solve(s, 1);
 }
 
+// x = free - H^-1 A' u
 void place(ActiveSetState& s) {
   pull_back(s);
   for (int i = 0; i < 3 * (s.last + 1); ++i) s.x[i] = s.free[i] - s.work[i];
 }
 
+// own = a' H^-1 a and column = A H^-1 a of the next constraint
 void reach(ActiveSetState& s) {
   clear_work(s);
   scatter(s, s.next, 1.0);
   hold_ends(s);
-  solve(s, s.next.joint > 0 ? s.next.joint : 1);
-  s.own = sum(s.next.normal * point_at(s.work, s.next.joint, s.next.map));
+  solve(s, s.next.knot > 0 ? s.next.knot : 1);
+  s.own = sum(s.next.normal * point_at(s.work, s.next.knot, s.next.map));
   for (int i = 0; i < s.count; ++i) {
-    const HalfSpace& a = s.active[i];
-    s.column[i] = sum(a.normal * point_at(s.work, a.joint, a.map));
+    const Constraint& a = s.active[i];
+    s.column[i] = sum(a.normal * point_at(s.work, a.knot, a.map));
   }
 }
 
@@ -95,7 +105,8 @@ GOSHAWK_INLINE void multiply_transposed(const ActiveSetState& s, const double* f
   }
 }
 
-// The slope as a difference is rounding where it is small: then it is computed from the remainder.
+// A small slope is rounding if computed as a difference. With the remainder e = a - A' change it is
+// e' H^-1 e; remainder = |e|_1 proves infeasibility.
 void measure_remainder(ActiveSetState& s) {
   clear_work(s);
   scatter(s, s.next, 1.0);
@@ -104,14 +115,15 @@ void measure_remainder(ActiveSetState& s) {
   Lanes total = {};
   for (int i = 3; i < 3 * s.last; ++i) total += magnitude(s.work[i]);
   s.remainder = sum(total);
-  solve(s, 1);  // with the remainder e, the slope is e' H^-1 e
-  s.slope = sum(s.next.normal * point_at(s.work, s.next.joint, s.next.map));
+  solve(s, 1);
+  s.slope = sum(s.next.normal * point_at(s.work, s.next.knot, s.next.map));
   for (int i = 0; i < s.count; ++i) {
-    const HalfSpace& a = s.active[i];
-    s.slope -= s.change[i] * sum(a.normal * point_at(s.work, a.joint, a.map));
+    const Constraint& a = s.active[i];
+    s.slope -= s.change[i] * sum(a.normal * point_at(s.work, a.knot, a.map));
   }
 }
 
+// image = M column, change = M' image, slope = own - |image|^2
 void project(ActiveSetState& s) {
   constexpr double kCancelled = 1e-6;
   for (int i = s.count; i % 4 != 0; ++i) s.column[i] = 0.0;
@@ -124,14 +136,15 @@ void project(ActiveSetState& s) {
   if (s.slope < kCancelled * s.own) measure_remainder(s);
 }
 
-// A limit that is a ball and is active already: its point y has slid along the half-spaces that
-// touch it. The pull F = sum multiplier * normal is to have the direction of y. As F turns by an
-// angle, y turns by compliance |F| times as much the other way: Newton's step for the direction.
+// The next constraint cuts a ball that is active already: its point y has slid along the half-spaces
+// that touch the ball. At the optimum the force F = sum u n has the direction of y. As F turns by an
+// angle, y turns by slope |F| times as much the other way, slope being that of the direction across.
+// Newton's step from F's direction towards y's is therefore 1 / (1 + |F| slope) of the way.
 void turn(ActiveSetState& s) {
   if (s.next.limit < 0) return;
   Lanes pull = {};
   for (int i = 0; i < s.count; ++i) {
-    const HalfSpace& a = s.active[i];
+    const Constraint& a = s.active[i];
     if (a.limit == s.next.limit) pull += a.multiplier * a.normal;
   }
   const double force = __builtin_sqrt(sum(pull * pull));
@@ -147,7 +160,7 @@ void turn(ActiveSetState& s) {
   const double share = 1.0 / (1.0 + force * larger(0.0, s.slope));
   Lanes normal = from + share * (to - from);
   normal = normal / all(__builtin_sqrt(sum(normal * normal)));
-  const Lanes y = point_at(s.x, s.next.joint, s.next.map);
+  const Lanes y = point_at(s.x, s.next.knot, s.next.map);
   const double violation = sum(normal * y) - 1.0;
   s.next.normal = to;
   if (!(violation > 0.1 * s.violation)) return;
@@ -155,7 +168,8 @@ void turn(ActiveSetState& s) {
   s.violation = violation;
 }
 
-// (A H^-1 A')^-1 of one more constraint, by the inverse of a bordered matrix.
+// M of one more constraint, from the inverse of a bordered matrix: the new row of M is
+// (-change, 1) / sqrt(slope).
 void append(ActiveSetState& s) {
   const int k = s.count;
   double* row = s.inverse_root + k * s.stride;
@@ -170,8 +184,9 @@ void append(ActiveSetState& s) {
   ++s.count;
 }
 
-// A reflection that leaves the column of the constraint in the last row alone: without both, M is
-// that of the other constraints. The last constraint takes the place of the dropped one.
+// M of one constraint less. A Householder reflection of M's rows, M - 2 v (v' M) / v' v, brings the
+// column of the constraint to the last row alone; without that row and column, M is that of the
+// other constraints. The last constraint takes the place of the dropped one.
 void drop(ActiveSetState& s, int index) {
   const int k = s.count, final = k - 1;
   double square = 0.0;
@@ -199,10 +214,11 @@ void drop(ActiveSetState& s, int index) {
   --s.count;
 }
 
+// u += M' M (A x - b), not below zero: what the active constraints miss. change = by how much.
 void refine(ActiveSetState& s) {
   for (int i = 0; i < s.count; ++i) {
-    const HalfSpace& a = s.active[i];
-    s.column[i] = sum(a.normal * point_at(s.x, a.joint, a.map)) - a.bound;
+    const Constraint& a = s.active[i];
+    s.column[i] = sum(a.normal * point_at(s.x, a.knot, a.map)) - a.bound;
   }
   for (int i = s.count; i % 4 != 0; ++i) s.column[i] = 0.0;
   multiply(s, s.column, s.image);
@@ -214,7 +230,8 @@ void refine(ActiveSetState& s) {
   }
 }
 
-// residual = gradient of the cost. @return its largest component, at least 1
+// objective = 1/2 x' Q x over the pieces, residual = its gradient.
+// @return the gradient's largest component, at least 1
 GOSHAWK_INLINE double differentiate_cost(ActiveSetState& s) {
   Lanes size = all(1.0), cost = {};
   for (int i = 0; i < 3 * (s.last + 1); ++i) s.residual[i] = Lanes{};
@@ -233,17 +250,17 @@ GOSHAWK_INLINE double differentiate_cost(ActiveSetState& s) {
   return largest(size);
 }
 
-// From nothing but x and the multipliers. The Lagrangian's least value is r' H^-1 r / 2 below what
-// it is at x, where its gradient is r: with what the slacks add, that is the duality gap.
-// Leaves H^-1 r in work.
+// From x and the multipliers alone: residual r = gradient of the cost + A' u, dual_residual its
+// largest component, relative, and gap = sum u |b - a' x| + r' H^-1 r / 2, for the Lagrangian's least
+// value is r' H^-1 r / 2 below its value at x. Leaves H^-1 r in work.
 void measure(ActiveSetState& s) {
   const double size = differentiate_cost(s);
   s.gap = 0.0;
   for (int i = 0; i < s.count; ++i) {
-    const HalfSpace& a = s.active[i];
-    Lanes* v = s.residual + 3 * a.joint;
+    const Constraint& a = s.active[i];
+    Lanes* v = s.residual + 3 * a.knot;
     for (int b = 0; b < 6; ++b) v[b] += a.map[b] * (a.multiplier * a.normal);
-    const double slack = a.bound - sum(a.normal * point_at(s.x, a.joint, a.map));
+    const double slack = a.bound - sum(a.normal * point_at(s.x, a.knot, a.map));
     s.gap += a.multiplier * larger(slack, -slack);
   }
   Lanes residual = {}, product = {};
@@ -258,8 +275,8 @@ void measure(ActiveSetState& s) {
   s.gap += 0.5 * larger(0.0, sum(product));
 }
 
-// A step of iterative refinement for x and the multipliers together, after measure(): what rounding
-// has left where durations are very uneven. The free minimum takes over what x gained.
+// A step of iterative refinement after measure(), for very uneven durations, which leave rounding:
+// x -= H^-1 r, u and x by refine(), and free = x + H^-1 A' u so that place() gives this x again.
 void polish(ActiveSetState& s) {
   const auto step = [&] {
     for (int i = 3; i < 3 * s.last; ++i) s.x[i] -= s.work[i];

@@ -16,9 +16,9 @@ Lanes four_of(const Vec3& v) {
 // The control points of a piece have the faces of one polytope.
 bool same_faces(const SplineProblem& problem, const FacePoint& a, const FacePoint& b) {
   const int count = a.end - a.begin;
-  const Face* faces = problem.faces.data();
+  const HalfSpace* faces = problem.faces.data();
   return b.end - b.begin == count &&
-         std::memcmp(faces + a.begin, faces + b.begin, std::size_t(count) * sizeof(Face)) == 0;
+         std::memcmp(faces + a.begin, faces + b.begin, std::size_t(count) * sizeof(HalfSpace)) == 0;
 }
 
 double* doubles_of(Lanes& first) {
@@ -50,22 +50,22 @@ void ActiveSetSolver::Memory::load(const SplineProblem& problem) {
   state.last = problem.pieces();
   finite = true;
   constant_violated = false;
-  load_joints(problem);
+  load_knots(problem);
   load_faces(problem);
   load_limits(problem);
   reserve_working_set();
 }
 
-void ActiveSetSolver::Memory::load_joints(const SplineProblem& problem) {
+void ActiveSetSolver::Memory::load_knots(const SplineProblem& problem) {
   const std::size_t n = std::size_t(state.last) + 1;
   for (auto* v : {&x_, &free_, &work_, &residual_}) v->assign(3 * n, Four{});
   factors_.resize(n);
   jerk_.resize(n);
   for (std::size_t k = 0; k < n; ++k) {
-    const Joint& joint = problem.joints[k];
-    for (int b = 0; b < 3; ++b) x_[3 * k + std::size_t(b)].v = four_of(joint.col(b));
+    const Knot& knot = problem.knots[k];
+    for (int b = 0; b < 3; ++b) x_[3 * k + std::size_t(b)].v = four_of(knot.col(b));
   }
-  finite = problem.joints.front().allFinite() && problem.joints.back().allFinite();
+  finite = problem.knots.front().allFinite() && problem.knots.back().allFinite();
   for (std::size_t k = 0; k + 1 < n; ++k) {
     Eigen::Map<Eigen::Matrix<double, 6, 6>>(jerk_[k].q) =
         problem.jerk_weight * jerk_hessian(problem.durations[k]);
@@ -83,7 +83,7 @@ void ActiveSetSolver::Memory::load_faces(const SplineProblem& problem) {
   faces_.clear();
   const FacePoint* packed = nullptr;  // whose faces were packed last
   for (const FacePoint& point : problem.face_points) {
-    if (point.joint <= 0 || point.joint >= state.last) {
+    if (point.knot <= 0 || point.knot >= state.last) {
       check_constant(problem, point);
       continue;
     }
@@ -93,7 +93,7 @@ void ActiveSetSolver::Memory::load_faces(const SplineProblem& problem) {
       packed = &point;
     }
     PricedPoint& to = points_.emplace_back();
-    to = {point.joint, first_packed_, int(faces_.size()), {}, 0.0};
+    to = {point.knot, first_packed_, int(faces_.size()), {}, 0.0};
     for (int i = 0; i < 3; ++i) to.map[i] = point.map[i];
   }
   state.points = points_.data();
@@ -104,24 +104,24 @@ void ActiveSetSolver::Memory::load_faces(const SplineProblem& problem) {
 void ActiveSetSolver::Memory::pack_faces(const SplineProblem& problem, const FacePoint& point) {
   double probe = 0.0;  // not zero where anything is not finite
   for (int i = point.begin; i < point.end; ++i) {
-    const Face& face = problem.faces[std::size_t(i)];
-    probe += 0.0 * (face.normal[0] + face.normal[1] + face.normal[2] + face.offset);
+    const HalfSpace& face = problem.faces[std::size_t(i)];
+    probe += 0.0 * (face.normal[0] + face.normal[1] + face.normal[2] + face.offset_m);
     const int lane = (i - point.begin) % 4;
     if (lane == 0) faces_.push_back({Lanes{}, Lanes{}, Lanes{}, Lanes{1.0, 1.0, 1.0, 1.0}});
     FourFaces& four = faces_.back();
     four.nx[lane] = face.normal[0];
     four.ny[lane] = face.normal[1];
     four.nz[lane] = face.normal[2];
-    four.offset[lane] = face.offset;
+    four.offset[lane] = face.offset_m;
   }
   finite = finite && probe == 0.0;
 }
 
 void ActiveSetSolver::Memory::check_constant(const SplineProblem& problem, const FacePoint& point) {
-  const Vec3 y = problem.joints[std::size_t(point.joint)] * point.map;
+  const Vec3 y = problem.knots[std::size_t(point.knot)] * point.map;
   for (int i = point.begin; i < point.end; ++i) {
-    const Face& face = problem.faces[std::size_t(i)];
-    if (!(face.normal.dot(y) <= face.offset)) constant_violated = true;
+    const HalfSpace& face = problem.faces[std::size_t(i)];
+    if (!(face.normal.dot(y) <= face.offset_m)) constant_violated = true;
   }
 }
 
@@ -155,7 +155,7 @@ void ActiveSetSolver::Memory::load_limit(const SplineProblem& problem, int k, in
   const auto& limits = derivative == 0   ? problem.v_max
                        : derivative == 1 ? problem.a_max
                                          : problem.j_max;
-  // Control points of neighbouring pieces coincide at a joint: one limit, the tighter.
+  // Control points of neighbouring pieces coincide at a knot: one limit, the tighter.
   const int first = k > 0 || derivative == 2 ? 0 : 1;
   const int end = derivative == 0 ? 4 : 3;
   for (int j = first; j < end; ++j) {
@@ -176,7 +176,7 @@ bool ActiveSetSolver::Memory::check_constant(const PointMap& map, int k, double 
   const bool first = k > 0 && !map.from_first.isZero(0.0);
   const bool second = k + 1 < state.last && !map.from_second.isZero(0.0);
   if (first || second) return false;
-  const Vec3 y = map(joint(k), joint(k + 1));
+  const Vec3 y = map(knot(k), knot(k + 1));
   for (int r = 0; r < set.norms; ++r) {
     double square = 0.0;
     for (int c = 0; c < 3; ++c) square += set.weights[r][c] * y[c] * y[c];
@@ -202,13 +202,13 @@ void ActiveSetSolver::Memory::reserve_working_set() {
   state.active = active_.data();
 }
 
-Joint ActiveSetSolver::Memory::joint(int k) const {
-  Joint joint;
+Knot ActiveSetSolver::Memory::knot(int k) const {
+  Knot knot;
   for (int b = 0; b < 3; ++b) {
     const Lanes& v = x_[std::size_t(3 * k + b)].v;
-    joint.col(b) = Vec3(v[0], v[1], v[2]);
+    knot.col(b) = Vec3(v[0], v[1], v[2]);
   }
-  return joint;
+  return knot;
 }
 
 }  // namespace goshawk::trajectory_optimizer

@@ -10,16 +10,16 @@ namespace goshawk::trajectory_optimizer {
 /// The vectors behind an ActiveSetState, and how a problem gets into them.
 struct ActiveSetSolver::Memory {
   ActiveSetState state;
-  bool finite = true;              // faces and joints
+  bool finite = true;              // faces and knots
   bool constant_violated = false;  // a point that the ends alone decide
   /// No trajectory within the acceleration limits has a larger objective.
   double most_objective = 0.0;
 
   void load(const SplineProblem& problem);
-  Joint joint(int k) const;
+  Knot knot(int k) const;
 
  private:
-  void load_joints(const SplineProblem& problem);
+  void load_knots(const SplineProblem& problem);
   void load_faces(const SplineProblem& problem);
   void pack_faces(const SplineProblem& problem, const FacePoint& point);
   void check_constant(const SplineProblem& problem, const FacePoint& point);
@@ -36,12 +36,12 @@ struct ActiveSetSolver::Memory {
   };
   std::vector<Four> x_, free_, work_, residual_, root_, column_, image_, change_;
   std::vector<Jerk> jerk_;
-  std::vector<JointFactor> factors_;
+  std::vector<KnotFactor> factors_;
   std::vector<PricedPoint> points_;
   std::vector<FourFaces> faces_;  // points with the same faces share them
   int first_packed_ = 0;
   std::vector<PricedLimits> limits_[kDerivatives];
-  std::vector<HalfSpace> active_;
+  std::vector<Constraint> active_;
 };
 
 }  // namespace goshawk::trajectory_optimizer

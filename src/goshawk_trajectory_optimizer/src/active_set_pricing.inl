@@ -1,4 +1,5 @@
-// Which constraint is violated most. Included by active_set_kernels.inl.
+// Pricing: the constraint with the largest violation * weight, weight = 1 / sqrt(a' H^-1 a).
+// Included by active_set_kernels.inl.
 
 // The largest weighted violation of each lane, and where it is.
 struct Worst {
@@ -32,17 +33,18 @@ GOSHAWK_INLINE Lanes root(Lanes q) {
                __builtin_sqrt(q[3])};
 }
 
+// n . y - offset
 GOSHAWK_INLINE Lanes violation_of(const FourFaces& f, Lanes y0, Lanes y1, Lanes y2) {
   return f.nx * y0 + f.ny * y1 + f.nz * y2 - f.offset;
 }
 
 GOSHAWK_INLINE Lanes face_point(const ActiveSetState& s, const PricedPoint& point) {
-  const Lanes* v = s.x + 3 * point.joint;
+  const Lanes* v = s.x + 3 * point.knot;
   return point.map[0] * v[0] + point.map[1] * v[1] + point.map[2] * v[2];
 }
 
-// Which point; which of its faces is found for the winner only, so that no search waits for
-// another.
+// The point with the most violated face, and face_violation = max n . y - offset. Which of its faces
+// it is take_face() finds, for the winner only.
 Worst price_faces(ActiveSetState& s) {
   Worst worst;
   const Lanes tolerance = all(s.face_tolerance);
@@ -63,14 +65,14 @@ Worst price_faces(ActiveSetState& s) {
 }
 
 GOSHAWK_INLINE void limit_points(const PricedLimits& l, const Lanes* x, Lanes* y) {
-  // Lane by lane of y: the components of four points. x holds one joint's components a vector.
+  // y[c]: component c of four points, one a lane. x[i]: the components of one state of a knot.
   for (int c = 0; c < 3; ++c) {
     y[c] = l.map[0] * x[0][c] + l.map[1] * x[1][c] + l.map[2] * x[2][c] + l.map[3] * x[3][c] +
            l.map[4] * x[4][c] + l.map[5] * x[5][c];
   }
 }
 
-// The largest of a control point's norms, squared, one point a lane.
+// max over norms r of sum_c weight_rc y_c^2, one point a lane
 GOSHAWK_INLINE Lanes largest_square(const PricedSet& set, const Lanes* y) {
   Lanes largest = {};
   for (int r = 0; r < set.norms; ++r) {
@@ -80,6 +82,7 @@ GOSHAWK_INLINE Lanes largest_square(const PricedSet& set, const Lanes* y) {
   return largest;
 }
 
+// The point with the largest (|y| - 1) weight, and limit_violation = max |y|^2 - 1.
 Worst price_limits(ActiveSetState& s) {
   Worst worst;
   const Lanes one = all(1.0), tolerance = all(s.limit_tolerance);
@@ -103,6 +106,7 @@ Worst price_limits(ActiveSetState& s) {
   return worst;
 }
 
+// next = the most violated face of a point
 void take_face(ActiveSetState& s, long long index, int lane) {
   const PricedPoint& point = s.points[index];
   const Lanes y = face_point(s, point);
@@ -114,26 +118,26 @@ void take_face(ActiveSetState& s, long long index, int lane) {
     violation = larger(here, violation);
   }
   const FourFaces& f = s.faces[most];
-  HalfSpace& to = s.next;
+  Constraint& to = s.next;
   to.normal = Lanes{f.nx[lane], f.ny[lane], f.nz[lane], 0.0};
   to.bound = f.offset[lane];
   to.limit = -1;
-  to.joint = point.joint;
+  to.knot = point.knot;
   for (int b = 0; b < 3; ++b) {
     to.map[b] = point.map[b];
     to.map[b + 3] = 0.0;
   }
 }
 
-// The half-space that touches the limit in the direction of the point. Where the norm is of one
-// component, that is the limit itself.
+// next = the half-space that touches the limit in the direction of the point: W y / |y| . y' <= 1, W
+// the norm's weights. If the norm has one component, that is the limit itself.
 void take_limit(ActiveSetState& s, long long index, int lane) {
   const int derivative = int(index % kDerivatives);
   const int piece = int(index / kDerivatives);
   const PricedSet& set = s.limits[derivative];
   const PricedLimits& l = set.pieces[piece];
-  HalfSpace& to = s.next;
-  to.joint = piece;
+  Constraint& to = s.next;
+  to.knot = piece;
   for (int b = 0; b < 6; ++b) to.map[b] = l.map[b][lane];
   const Lanes y = point_at(s.x, piece, to.map);
   int norm = 0;
@@ -165,7 +169,7 @@ void price(ActiveSetState& s) {
     take_limit(s, limit, limit_lane);
   }
   s.next.multiplier = 0.0;
-  // Summed in another order than it was found: it stays a violation.
-  const Lanes y = point_at(s.x, s.next.joint, s.next.map);
+  // The sum is taken in another order than above: it must stay a violation.
+  const Lanes y = point_at(s.x, s.next.knot, s.next.map);
   s.violation = larger(sum(s.next.normal * y) - s.next.bound, 1e-300);
 }

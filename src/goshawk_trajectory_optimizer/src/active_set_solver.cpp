@@ -100,8 +100,8 @@ ActiveSetSolver::Outcome ActiveSetSolver::solve(const SplineProblem& problem,
     return out;
   }
   iterate(settings, out);
-  solution_.resize(problem.joints.size());
-  for (int k = 0; k <= problem.pieces(); ++k) solution_[std::size_t(k)] = memory_->joint(k);
+  solution_.resize(problem.knots.size());
+  for (int k = 0; k <= problem.pieces(); ++k) solution_[std::size_t(k)] = memory_->knot(k);
   return out;
 }
 

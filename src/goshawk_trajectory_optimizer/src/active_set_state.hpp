@@ -6,24 +6,20 @@
 // spline_state.hpp.
 namespace goshawk::trajectory_optimizer {
 
-/// normal . y <= bound on a point y = map (two joints), with its multiplier. A face of a polytope,
+/// normal . y <= bound on a point y = map (two knots), with its multiplier. A face of a polytope,
 /// or the half-space that touches a limit where a control point went through it.
-struct HalfSpace {
+struct Constraint {
   Lanes normal;   // x, y, z, 0
-  double map[6];  // of p, v, a of `joint` and of the next
-  int joint;
+  double map[6];  // of p, v, a of `knot` and of the next
+  int knot;
   double bound;
   double multiplier;
   long long limit;  // the ball that it touches; -1: a face, or a limit that is a plane
 };
 
-struct FourFaces {
-  Lanes nx, ny, nz, offset;
-};
-
-/// A control point y = p + beta v + gamma a of one joint and its faces.
+/// A control point y = p + beta v + gamma a of one knot and its faces.
 struct PricedPoint {
-  int joint, begin, end;
+  int knot, begin, end;
   double map[3];
   double weight;  // by which its violations are compared: 1 / sqrt(map' H^-1 map)
 };
@@ -45,18 +41,18 @@ struct PricedSet {
 };
 
 /// A block row of the Hessian of one axis, H = L D L': 3 x 3 blocks by rows.
-struct JointFactor {
+struct KnotFactor {
   double inverse[9];     // D^-1
-  double below[9];       // L's block to the joint before
-  double variance[9];    // this joint's block of H^-1
-  double covariance[9];  // rows: the next joint; columns: this one
+  double below[9];       // L's block to the knot before
+  double variance[9];    // this knot's block of H^-1
+  double covariance[9];  // rows: the next knot; columns: this one
 };
 
 struct ActiveSetState {
-  int last = 0;                  // index of the last joint = number of pieces
+  int last = 0;                  // index of the last knot = number of pieces
   const double* jerk = nullptr;  // 36 a piece
-  JointFactor* factors = nullptr;
-  Lanes* x = nullptr;         // 3 a joint: p, v, a; the ends are constant
+  KnotFactor* factors = nullptr;
+  Lanes* x = nullptr;         // 3 a knot: p, v, a; the ends are constant
   Lanes* free = nullptr;      // the same without constraints
   Lanes* work = nullptr;      // likewise; zero at the ends
   Lanes* residual = nullptr;  // gradient of the Lagrangian
@@ -67,7 +63,7 @@ struct ActiveSetState {
   double face_tolerance = 0.0, limit_tolerance = 0.0;
 
   // The working set W, and M with M'M = (A H^-1 A')^-1, square, rows of `stride` doubles.
-  HalfSpace* active = nullptr;
+  Constraint* active = nullptr;
   int count = 0, capacity = 0, stride = 0;
   int cuts = 0;   // of balls, in W
   int turns = 0;  // cuts of balls that were cut already
@@ -76,7 +72,7 @@ struct ActiveSetState {
   double* image = nullptr;   // M times it
   double* change = nullptr;  // (A H^-1 A')^-1 A H^-1 a: how multipliers fall as the new one grows
 
-  HalfSpace next;          // the constraint that is about to become active
+  Constraint next;         // the constraint that is about to become active
   double violation = 0.0;  // of it; 0: none is violated
   double own = 0.0;        // a' H^-1 a
   double slope = 0.0;      // of its violation by its multiplier: a' H^-1 (a - A' change)

@@ -24,7 +24,7 @@ struct Cutter {
   static constexpr double kMostPieces = 2000.0;
 
   /// @param at_moving_end first or last where that end moves
-  static Cutter of(const Request& request, const Config& config, double total_s,
+  static Cutter of(const PlanRequest& request, const Config& config, double total_s,
                    double at_moving_end) {
     const double longest_s = std::max(config.piece_duration_s, total_s / kMostPieces);
     return {total_s, std::min(longest_s, total_s / config.min_pieces),
@@ -55,7 +55,7 @@ struct Cutter {
 inline void append(Plan& plan, double duration_s, int polytope, const FlatState& end) {
   plan.durations_s.push_back(duration_s);
   plan.polytopes.push_back(polytope);
-  plan.joints.push_back(end);
+  plan.knots.push_back(end);
 }
 
 }  // namespace goshawk::trajectory_optimizer

@@ -1,5 +1,11 @@
-// The Newton system: block-tridiagonal with 9 x 9 blocks and one border, factored as L D L'.
-// Work is linear in the number of joints.
+// The Newton system of the inner knots and eta,
+//
+//   | A_1  B_1'           c_1 |
+//   | B_1  A_2  B_2'      c_2 |      A_k 9 x 9: knot k with itself; B_k: knot k + 1 with k;
+//   |      B_2  A_3  ...  c_3 |      c_k: knot k with eta; corner: eta with itself,
+//   | c_1' c_2' c_3' ...  corner |
+//
+// factored as L D L' with D diagonal. Work is linear in the number of knots.
 
 GOSHAWK_INLINE const double* at(const Lanes* lanes) {
   return reinterpret_cast<const double*>(lanes);
@@ -10,16 +16,16 @@ GOSHAWK_INLINE double* at(Lanes* lanes) {
 
 // Where (row axis, column axis) stands in a symmetric block.
 constexpr int kSymmetric[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
-constexpr int kDiagonal[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};  // block of a joint
+constexpr int kDiagonal[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};  // block of a knot
 
-// Column 3 c + axis of a joint's panel.
-GOSHAWK_INLINE void expand(const JointSums& joint, const PieceSums* piece, int c, int axis,
+// Column 3 c + axis of a knot's panel.
+GOSHAWK_INLINE void expand(const KnotSums& knot, const PieceSums* piece, int c, int axis,
                            double* column) {
   for (int r = 0; r < 3; ++r) {
-    const double* block = at(joint.block[kDiagonal[r][c]]);
+    const double* block = at(knot.block[kDiagonal[r][c]]);
     for (int i = 0; i < 3; ++i) column[3 * r + i] = block[kSymmetric[i][axis]];
   }
-  const double border = at(joint.border)[4 * c + axis];
+  const double border = at(knot.border)[4 * c + axis];
   column[9] = column[21] = border;
   column[10] = column[11] = column[22] = column[23] = 0.0;
   for (int r = 0; r < 3; ++r) {
@@ -30,12 +36,14 @@ GOSHAWK_INLINE void expand(const JointSums& joint, const PieceSums* piece, int c
   }
 }
 
-// Columns of L below a panel's diagonal block: of use to the next panel alone.
+// Columns of L below a panel's diagonal block: only the next panel needs them.
 struct Below {
   Lanes l[9][3];
 };
 
-// Left-looking: each column is finished in registers. @return false where not positive definite
+// Column c of L D = column c of (A, B, border) - sum over earlier columns j of (L D)_j L_cj, those of
+// the panel before and of this one: each is finished in registers. corner -= (L D)_border^2 / d.
+// @return false if the matrix is not positive definite
 GOSHAWK_INLINE bool factor_panel(Panel& panel, Below& below, const Panel* before,
                                  const Below& below_before, double& corner) {
   double* const inverse_d = at(panel.inverse_d);
@@ -78,16 +86,17 @@ GOSHAWK_INLINE void add_product(const Lanes* block, const Lanes& v, double facto
   }
 }
 
-// The ends are affine in eta: what they would have added goes to the border.
+// The ends are x_0 + (eta - 1) rate: their blocks go to the border, c_k += B rate, and to the
+// corner, rate' A rate + 2 rate' c.
 void fold_ends(SplineState& w) {
   for (int end = 0; end < 2; ++end) {
     const Lanes* rate = end == 0 ? w.start_rate : w.goal_rate;
-    const JointSums& joint = w.joints[end == 0 ? 0 : w.last];
+    const KnotSums& knot = w.knots[end == 0 ? 0 : w.last];
     for (int r = 0; r < 3; ++r) {
       double product[3] = {};
-      for (int c = 0; c < 3; ++c) add_product(joint.block[kDiagonal[r][c]], rate[c], 1.0, product);
+      for (int c = 0; c < 3; ++c) add_product(knot.block[kDiagonal[r][c]], rate[c], 1.0, product);
       for (int i = 0; i < 3; ++i) {
-        w.corner += rate[r][i] * (product[i] + 2.0 * joint.border[r][i]);
+        w.corner += rate[r][i] * (product[i] + 2.0 * knot.border[r][i]);
       }
     }
   }
@@ -99,9 +108,9 @@ void fold_ends(SplineState& w) {
         for (int i = 0; i < 3; ++i) w.corner += 2.0 * w.goal_rate[r][i] * product[i];
         continue;
       }
-      add_product(w.pieces[0].block[3 * r + c], w.start_rate[c], 1.0, at(w.joints[1].border + r));
+      add_product(w.pieces[0].block[3 * r + c], w.start_rate[c], 1.0, at(w.knots[1].border + r));
       add_product(w.pieces[w.last - 1].block[3 * r + c], w.goal_rate[r], 1.0,
-                  at(w.joints[w.last - 1].border + c));
+                  at(w.knots[w.last - 1].border + c));
     }
   }
 }
@@ -115,7 +124,7 @@ bool factor(SplineState& w) {
     const PieceSums* piece = k + 1 < w.last ? &w.pieces[k] : nullptr;
     for (int c = 0; c < 3; ++c) {
       for (int axis = 0; axis < 3; ++axis) {
-        expand(w.joints[k], piece, c, axis, at(panel.u[3 * c + axis]));
+        expand(w.knots[k], piece, c, axis, at(panel.u[3 * c + axis]));
       }
     }
     const Panel* before = k > 1 ? &w.panels[k - 1] : nullptr;
@@ -124,6 +133,7 @@ bool factor(SplineState& w) {
   return w.corner > 0.0 && w.corner < 1e300;
 }
 
+// Forward: x = D^-1 L^-1 x for the panel's nine; next and the border lose what L has below.
 GOSHAWK_INLINE void solve_down(const Panel& panel, Lanes* x, Lanes* next) {
   Lanes a[3] = {x[0], x[1], x[2]};
   Lanes b[3] = {next[0], next[1], next[2]};
@@ -140,6 +150,7 @@ GOSHAWK_INLINE void solve_down(const Panel& panel, Lanes* x, Lanes* next) {
   for (int i = 0; i < 3; ++i) next[i] = b[i];
 }
 
+// Backward: x = L^-T x for the panel's nine, next and the border known.
 GOSHAWK_INLINE void solve_up(const Panel& panel, Lanes* x, const Lanes* next) {
   Lanes a[3] = {x[0], x[1], x[2]};
 #pragma GCC unroll 3
@@ -158,7 +169,7 @@ GOSHAWK_INLINE void solve_up(const Panel& panel, Lanes* x, const Lanes* next) {
   for (int i = 0; i < 3; ++i) x[i] = a[i];
 }
 
-// In: w.rhs (packed, inner joints) and w.deta, the right-hand side of eta. Out: dx, deta.
+// In: w.rhs (packed, inner knots) and w.deta, the right-hand side of eta. Out: dx, deta.
 void solve(SplineState& w) {
   for (int i = 0; i < 3; ++i) w.rhs[3 * w.last + i] = all(0.0);
   double border = w.deta;
@@ -187,22 +198,22 @@ void solve(SplineState& w) {
   }
 }
 
-// rhs = -cost - pull - extra of all joints, the ends folded into eta's.
+// rhs = -cost - pull - extra of all knots, the ends folded into eta's.
 void load_rhs(SplineState& w) {
   w.deta = w.scale ? -w.time_weight - w.pull_eta : 0.0;
   for (int k = 1; k < w.last; ++k) {
     double* to = at(w.rhs + 3 * k);
-    const JointSums& joint = w.joints[k];
+    const KnotSums& knot = w.knots[k];
     for (int b = 0; b < 3; ++b) {
-      const Lanes v = -joint.cost[b] - joint.pull[b];
+      const Lanes v = -knot.cost[b] - knot.pull[b];
       for (int i = 0; i < 3; ++i) to[3 * b + i] = v[i];
     }
     to[9] = to[10] = to[11] = 0.0;
   }
   if (!w.scale || !w.ends_move) return;
   for (int b = 0; b < 3; ++b) {
-    const JointSums& first = w.joints[0];
-    const JointSums& final = w.joints[w.last];
+    const KnotSums& first = w.knots[0];
+    const KnotSums& final = w.knots[w.last];
     w.deta -= sum((first.cost[b] + first.pull[b]) * w.start_rate[b]);
     w.deta -= sum((final.cost[b] + final.pull[b]) * w.goal_rate[b]);
   }

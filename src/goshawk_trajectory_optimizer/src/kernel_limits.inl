@@ -1,6 +1,13 @@
-// The limits: smooth convex rows  q g - e + s = 0  with q = sum_c weight_c y_c^2, on a point y of
-// two joints and e = e1 eta + e0. Velocity has g = 1; acceleration and jerk (Over) g = 1 / e, a
-// quadratic over a linear function, which is as convex as the cone it stands for.
+// The limits: smooth convex rows g = q h - e with q = sum_c weight_c y_c^2, on a point y of two knots,
+// and e = e1 eta + e0; four control points of a piece a vector. Velocity has h = 1; acceleration
+// and jerk (Over) h = 1 / e, a quadratic over a linear function, which is as convex as the cone it
+// stands for. Derivatives:
+//
+//   dg/dy_c = 2 h weight_c y_c =: G_c      dg/deta = -e1 (1 + q / e^2)    (Over; else -e1)
+//   d2g/dy_c^2 = 2 h weight_c              d2g/(dy_c deta) = -G_c e1 / e  (Over; else 0)
+//                                          d2g/deta^2 = 2 q e1^2 / e^3    (Over; else 0)
+
+// y_c = sum over the six of (p, v, a of the first knot, p, v, a of the second), component c
 
 GOSHAWK_INLINE void points_of(const LimitLanes& l, const Lanes* x, Lanes* y) {
   for (int c = 0; c < 3; ++c) {
@@ -9,14 +16,16 @@ GOSHAWK_INLINE void points_of(const LimitLanes& l, const Lanes* x, Lanes* y) {
   }
 }
 
-// What the four points of a piece add, point by point: after transposing, one vector a point.
+// What the four points of a piece add to the sums by y, a point a lane: w = sum z / s G G' +
+// z d2g/dy^2 as xx xy xz yy yz zz, g = sum z G, pull = sum z / s r G, and the mixed terms with eta.
 struct LimitSums {
   Lanes w[6] = {}, g[3] = {}, pull[3] = {}, border[3] = {};
 };
 
-// block += m_row m_column W; velocity and acceleration maps have zeros, which are worth a look.
+// The Hessian of two knots += (m m') (x) W for one point's map m = (a of the first knot, b of the
+// second). Maps at the ends of a piece have zeros, which saves half of the work.
 GOSHAWK_INLINE void scatter_point(const double (*m)[4], int lane, Lanes w0, Lanes w1,
-                                  JointSums& first, JointSums& second, PieceSums& piece) {
+                                  KnotSums& first, KnotSums& second, PieceSums& piece) {
   const double a[3] = {m[0][lane], m[1][lane], m[2][lane]};
   const double b[3] = {m[3][lane], m[4][lane], m[5][lane]};
   const bool has_first = a[0] != 0.0 || a[1] != 0.0 || a[2] != 0.0;
@@ -33,6 +42,7 @@ GOSHAWK_INLINE void scatter_point(const double (*m)[4], int lane, Lanes w0, Lane
   }
 }
 
+// first[b] += m_b v, second[b] += m_(b + 3) v, summed over the four points of v
 GOSHAWK_INLINE void scatter_vector(const double (*m)[4], Lanes* v, Lanes* first, Lanes* second,
                                    int stride) {
   Lanes p[4] = {v[0], v[1], v[2], Lanes{}};
@@ -45,8 +55,9 @@ GOSHAWK_INLINE void scatter_vector(const double (*m)[4], Lanes* v, Lanes* first,
   }
 }
 
-GOSHAWK_INLINE void scatter(const LimitLanes& l, LimitSums& to, bool scale, JointSums& first,
-                            JointSums& second, PieceSums& piece) {
+// From sums by y to sums by knots, with each point's map.
+GOSHAWK_INLINE void scatter(const LimitLanes& l, LimitSums& to, bool scale, KnotSums& first,
+                            KnotSums& second, PieceSums& piece) {
   const auto* m = reinterpret_cast<const double(*)[4]>(l.map);
   scatter_vector(m, to.g, first.dual, second.dual, 1);
   scatter_vector(m, to.pull, first.pull, second.pull, 1);
@@ -64,6 +75,7 @@ struct LimitTotals {
         hessian_eta = {};
 };
 
+// r, 1 / s, dg/deta and the sums of the limits of one derivative of piece k.
 template <bool Over>
 GOSHAWK_INLINE void linearise_limit(SplineState& w, const LimitSet& set, int k,
                                     LimitTotals& total) {
@@ -110,9 +122,10 @@ GOSHAWK_INLINE void linearise_limit(SplineState& w, const LimitSet& set, int k,
     to.w[4] += wG[1] * G[2];
     to.w[5] += wG[2] * G[2] + bend * set.weights[r][2];
   }
-  scatter(l, to, w.scale, w.joints[k], w.joints[k + 1], w.pieces[k]);
+  scatter(l, to, w.scale, w.knots[k], w.knots[k + 1], w.pieces[k]);
 }
 
+// All pieces: residuals, G' z, G' (z / s) r and G' diag(z / s) G + sum z d2g.
 template <bool Over>
 void linearise_limits(SplineState& w, const LimitSet& set) {
   LimitTotals total;
@@ -126,6 +139,7 @@ void linearise_limits(SplineState& w, const LimitSet& set) {
   w.hessian_eta += sum(total.hessian_eta);
 }
 
+// r = g + 1, and the largest g
 template <bool Over>
 void evaluate_limits(SplineState& w, const LimitSet& set) {
   Lanes outside = {};
@@ -145,7 +159,8 @@ void evaluate_limits(SplineState& w, const LimitSet& set) {
   w.limit_violation = larger(w.limit_violation, largest(outside));
 }
 
-// The slope of a row along a direction, and half its bend (exact: rows are quadratic).
+// Along the step (dy, deta): slope = G . dy + dg/deta deta, and half the second derivative,
+// bend = h sum_c weight_c (dy_c - y_c de / e)^2 (Over; else sum_c weight_c dy_c^2).
 struct Along {
   Lanes slope, bend;
 };
@@ -162,6 +177,8 @@ GOSHAWK_INLINE Along along(const SplineState& w, const LimitSet& set, const Limi
   return a;
 }
 
+// ds = -r - slope, dz = -z - z / s ds, target = ds dz.
+// @return the largest of -ds / s and -dz / z
 template <bool Over>
 double predict_limits(SplineState& w, const LimitSet& set) {
   Lanes worst = {}, product = {};
@@ -185,6 +202,8 @@ double predict_limits(SplineState& w, const LimitSet& set) {
   return largest(worst);
 }
 
+// target = t = (mu - trust ds dz) / s, pull = G' (t + z / s r), with r what the predictor's step
+// would leave in second order: r + reach^2 bend
 template <bool Over>
 void pull_limits(SplineState& w, const LimitSet& set, double mu) {
   Lanes pull_eta = {};
@@ -198,18 +217,19 @@ void pull_limits(SplineState& w, const LimitSet& set, double mu) {
     for (int r = 0; r < set.rows; ++r) {
       auto& row = l.row[r];
       const Along a = along<Over>(w, set, l, r, dy, de);
-      row.residual += w.reach * w.reach * a.bend;  // the predictor's second order
+      row.residual += w.reach * w.reach * a.bend;
       row.target = (mu - w.trust * row.target) * row.inverse_s;
       const Lanes c = row.target + row.z * row.inverse_s * row.residual;
       pull_eta += c * row.slope_e;
       for (int i = 0; i < 3; ++i) pull[i] += c * (2.0 * g * set.weights[r][i] * l.y[i]);
     }
     const auto* m = reinterpret_cast<const double(*)[4]>(l.map);
-    scatter_vector(m, pull, w.joints[k].pull, w.joints[k + 1].pull, 1);
+    scatter_vector(m, pull, w.knots[k].pull, w.knots[k + 1].pull, 1);
   }
   w.pull_eta += sum(pull_eta);
 }
 
+// residual = ds = -r - slope. @return the largest of -ds / s, -dz / z and -de / e
 template <bool Over>
 double finish_limits(SplineState& w, const LimitSet& set) {
   Lanes worst = {};

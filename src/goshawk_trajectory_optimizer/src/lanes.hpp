@@ -10,6 +10,11 @@ namespace goshawk::trajectory_optimizer {
 // The alignment is stated: without it, it would depend on the instruction set.
 using Lanes = double __attribute__((vector_size(32), aligned(32)));
 
+/// Four faces n . y <= offset. One that only fills up the four has no normal and an offset of 1.
+struct FourFaces {
+  Lanes nx, ny, nz, offset;
+};
+
 namespace {
 
 using LaneIndices = long long __attribute__((vector_size(32)));

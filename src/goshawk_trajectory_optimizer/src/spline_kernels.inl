@@ -1,7 +1,18 @@
 // The iteration's passes over a SplineState. Included by one source for each instruction set,
 // inside an unnamed namespace: nothing here may be shared between them.
+//
+// The problem is: minimise f(x) subject to g_i(x) <= 0, x all knots and eta. With a slack s_i and a
+// multiplier z_i for each row, r_i = g_i + s_i and G the rows' gradients, Newton's step of the
+// perturbed optimality conditions is
+//
+//   (H_f + sum z_i H_gi + G' diag(z / s) G) dx = -grad f - G' (t + z / s r)
+//   ds = -r - G dx
+//   dz = t - z - z / s ds
+//
+// with t = 0 in the predictor and t = (mu - ds dz) / s in the corrector, ds and dz the predictor's
+// (Mehrotra). linearise() makes the matrix, factor() factors it, predict() and correct() solve.
 
-// Slacks and multipliers follow x, when they are read anyway.
+// s += step ds, z += step dz: rows follow x in the next pass, which reads them anyway.
 GOSHAWK_INLINE void take_step(Row& row, double step) {
   const Lanes ds = row.residual;
   const Lanes dz = row.target - row.z - row.z * row.inverse_s * ds;
@@ -13,10 +24,12 @@ GOSHAWK_INLINE void take_step(Row& row, double step) {
 #include "kernel_factor.inl"
 #include "kernel_limits.inl"
 
+// The cost alone: objective = w eta + 1/2 sum over pieces of x' Q x, its gradient Q x and the Hessian
+// Q, the same for the three axes. All other sums become zero.
 void start_sums(SplineState& w) {
   w.objective = w.time_weight * w.eta;
   for (int k = 0; k <= w.last; ++k) {
-    JointSums& j = w.joints[k];
+    KnotSums& j = w.knots[k];
     for (auto& block : j.block) block[0] = block[1] = Lanes{};
     for (int b = 0; b < 3; ++b) j.border[b] = j.cost[b] = j.dual[b] = j.pull[b] = Lanes{};
   }
@@ -27,8 +40,8 @@ void start_sums(SplineState& w) {
   for (int k = 0; k < w.last; ++k) {
     const double* q = w.jerk + 36 * k;
     const Lanes* x = w.x + 3 * k;
-    JointSums& first = w.joints[k];
-    JointSums& second = w.joints[k + 1];
+    KnotSums& first = w.knots[k];
+    KnotSums& second = w.knots[k + 1];
     Lanes cost = {};
     for (int b = 0; b < 6; ++b) {
       Lanes g = {};
@@ -53,12 +66,15 @@ void start_sums(SplineState& w) {
   }
 }
 
+// dual_residual = largest component of grad f + G' z over that of grad f (at least 1);
+// multiplier_residual = |G' z|_1, for the proof of infeasibility. The ends are affine in eta and
+// count with its component.
 void measure_dual_residual(SplineState& w) {
   Lanes residual = {}, size = all(1.0), multipliers = {};
   for (int k = 1; k < w.last; ++k) {
     for (int b = 0; b < 3; ++b) {
-      const Lanes cost = w.joints[k].cost[b];
-      const Lanes dual = w.joints[k].dual[b];
+      const Lanes cost = w.knots[k].cost[b];
+      const Lanes dual = w.knots[k].dual[b];
       residual = larger(residual, magnitude(cost + dual));
       size = larger(size, magnitude(cost));
       multipliers += magnitude(dual);
@@ -69,10 +85,10 @@ void measure_dual_residual(SplineState& w) {
   if (w.scale) {
     double cost = w.time_weight, dual = w.dual_eta;
     for (int b = 0; b < 3; ++b) {
-      cost += sum(w.joints[0].cost[b] * w.start_rate[b]);
-      cost += sum(w.joints[w.last].cost[b] * w.goal_rate[b]);
-      dual += sum(w.joints[0].dual[b] * w.start_rate[b]);
-      dual += sum(w.joints[w.last].dual[b] * w.goal_rate[b]);
+      cost += sum(w.knots[0].cost[b] * w.start_rate[b]);
+      cost += sum(w.knots[w.last].cost[b] * w.goal_rate[b]);
+      dual += sum(w.knots[0].dual[b] * w.start_rate[b]);
+      dual += sum(w.knots[w.last].dual[b] * w.goal_rate[b]);
     }
     worst = larger(worst, larger(cost + dual, -cost - dual));
     scale = larger(scale, larger(cost, -cost));
@@ -81,6 +97,8 @@ void measure_dual_residual(SplineState& w) {
   w.dual_residual = worst / scale;
 }
 
+// Takes the step that apply() has left, and sums everything that the Newton system is made of at
+// the new point: residuals, gradients, the reduced Hessian.
 void linearise(SplineState& w) {
   w.dual_eta = w.pull_eta = w.hessian_eta = 0.0;
   w.gap = w.proof = w.primal_residual = w.face_violation = w.limit_violation = 0.0;
@@ -93,14 +111,14 @@ void linearise(SplineState& w) {
   measure_dual_residual(w);
 }
 
-// min cost + pull / 2 sum of |p_k - guess_k|^2, ends and eta given.
+// x = argmin of 1/2 x' Q x + pull / 2 sum of |p_k - guess_k|^2, ends and eta given: one Newton step.
 bool smooth(SplineState& w, double pull) {
   w.pull_eta = 0.0;
   w.hessian_eta = 1.0;
   start_sums(w);
   for (int k = 0; k <= w.last; ++k) {
-    w.joints[k].block[0][0] += Lanes{pull, 0.0, 0.0, pull};
-    w.joints[k].block[0][1] += Lanes{0.0, pull, 0.0, 0.0};
+    w.knots[k].block[0][0] += Lanes{pull, 0.0, 0.0, pull};
+    w.knots[k].block[0][1] += Lanes{0.0, pull, 0.0, 0.0};
   }
   if (!factor(w)) return false;
   load_rhs(w);
@@ -109,6 +127,7 @@ bool smooth(SplineState& w, double pull) {
   return true;
 }
 
+// r = g + 1 of every row, and how far limits are exceeded.
 void evaluate(SplineState& w) {
   w.limit_violation = 0.0;
   start_sums(w);
@@ -118,6 +137,8 @@ void evaluate(SplineState& w) {
   if (w.jerk_limit.lanes != nullptr) evaluate_limits<true>(w, w.jerk_limit);
 }
 
+// The step with t = 0. reach = the share of it up to the first s or z that becomes zero, at most 1;
+// product = ds' dz.
 double predict(SplineState& w) {
   load_rhs(w);
   solve(w);
@@ -127,16 +148,16 @@ double predict(SplineState& w) {
   worst = larger(worst, predict_limits<true>(w, w.acceleration));
   if (w.jerk_limit.lanes != nullptr) worst = larger(worst, predict_limits<true>(w, w.jerk_limit));
   w.reach = worst > 1.0 ? 1.0 / worst : 1.0;
-  // What a predictor promises that ends at once is not worth correcting: it can go round in
-  // circles.
+  // A predictor that ends at once says nothing about the second order: correcting for it can cycle.
   constexpr double kShort = 0.1;
   w.trust = w.reach < kShort ? 0.0 : 1.0;
   return w.reach;
 }
 
+// The step with t = (mu - trust ds dz) / s. @return the share of it up to the boundary
 double correct(SplineState& w, double mu) {
   for (int k = 0; k <= w.last; ++k) {
-    for (int b = 0; b < 3; ++b) w.joints[k].pull[b] = Lanes{};
+    for (int b = 0; b < 3; ++b) w.knots[k].pull[b] = Lanes{};
   }
   w.pull_eta = 0.0;
   pull_faces(w, mu);

@@ -29,23 +29,23 @@ void SplineSolver::Memory::load(const SplineProblem& problem) {
   state.step = 0.0;
   jerk_weight_ = problem.jerk_weight;
   constant_point_violated = false;
-  load_joints(problem);
+  load_knots(problem);
   load_faces(problem);
   load_limits(problem);
-  state.joints = joints_.data();
+  state.knots = knots_.data();
   state.pieces = pieces_.data();
   state.panels = panels_.data();
 }
 
-void SplineSolver::Memory::load_joints(const SplineProblem& problem) {
+void SplineSolver::Memory::load_knots(const SplineProblem& problem) {
   const std::size_t n = std::size_t(state.last) + 1;
   for (auto* v : {&x_, &dx_, &rhs_}) v->assign(n, Triple{});
   rates_.assign(2, Triple{});
-  joints_.resize(n);
+  knots_.resize(n);
   pieces_.resize(n);
   panels_.resize(n);  // what a factorisation leaves as it was stays zero
   jerk_.resize(n);
-  set_joints(problem.joints);
+  set_knots(problem.knots);
   if (state.scale) {
     for (int b = 0; b < 3; ++b) {
       rates_[0].v[b] = padded(problem.start_rate.col(b));
@@ -70,14 +70,14 @@ void SplineSolver::Memory::load_faces(const SplineProblem& problem) {
   ranges_.clear();
   planes_.clear();
   faces_.clear();
-  std::span<const Face> last;
+  std::span<const HalfSpace> last;
   for (const FacePoint& point : problem.face_points) {
     const std::span faces(problem.faces.data() + point.begin, problem.faces.data() + point.end);
     // The points of a piece mostly have the faces of one polytope.
     if (!std::ranges::equal(faces, last)) load_planes(faces);
     last = faces;
     const auto count = (faces.size() + 3) / 4;
-    FaceRange range{point.joint,
+    FaceRange range{point.knot,
                     int(faces_.size()),
                     int(faces_.size() + count),
                     int(planes_.size() - count),
@@ -92,17 +92,17 @@ void SplineSolver::Memory::load_faces(const SplineProblem& problem) {
   state.faces = faces_.data();
 }
 
-void SplineSolver::Memory::load_planes(std::span<const Face> faces) {
+void SplineSolver::Memory::load_planes(std::span<const HalfSpace> faces) {
   for (std::size_t i = 0; i < faces.size(); i += 4) {
-    FacePlanes& planes = planes_.emplace_back();
+    FourFaces& planes = planes_.emplace_back();
     planes.nx = planes.ny = planes.nz = Lanes{};
     planes.offset = Lanes{1.0, 1.0, 1.0, 1.0};  // fills up: no normal, always satisfied
     for (std::size_t j = 0; j < 4 && i + j < faces.size(); ++j) {
-      const Face& face = faces[i + j];
+      const HalfSpace& face = faces[i + j];
       planes.nx[j] = face.normal[0];
       planes.ny[j] = face.normal[1];
       planes.nz[j] = face.normal[2];
-      planes.offset[j] = face.offset;
+      planes.offset[j] = face.offset_m;
     }
   }
 }
@@ -161,7 +161,7 @@ void SplineSolver::Memory::load_limit(const SplineProblem& problem, int k, int o
     const PointMap map = order == 1   ? velocity_point(j, T)
                          : order == 2 ? acceleration_point(j, T)
                                       : jerk_point(j, T);
-    // Control points of neighbouring pieces coincide at a joint: one limit, the tighter.
+    // Control points of neighbouring pieces coincide at a knot: one limit, the tighter.
     const bool shared = j == 0 && order < 3;
     const double limit = shared ? std::min(limits[i - 1], limits[i]) : limits[i];
     if (!is_row(map, k, limit,
@@ -183,14 +183,14 @@ void SplineSolver::Memory::load_limit(const SplineProblem& problem, int k, int o
 // A point that no unknown moves is checked once and makes no row: the method needs an interior,
 // and a constant may lie on its limit.
 bool SplineSolver::Memory::is_row(const PointMap& map, int k, double limit, const LimitSet& set) {
-  const auto moves = [&](int joint) {
-    return (joint > 0 && joint < state.last) || (state.ends_move && state.scale);
+  const auto moves = [&](int knot) {
+    return (knot > 0 && knot < state.last) || (state.ends_move && state.scale);
   };
   const bool first = !map.from_first.isZero(0.0);
   const bool second = !map.from_second.isZero(0.0);
   if ((first && moves(k)) || (second && moves(k + 1))) return true;
   if (state.scale) return false;  // an end at rest
-  const Vec3 y = map(joint(k), joint(k + 1));
+  const Vec3 y = map(knot(k), knot(k + 1));
   for (int r = 0; r < set.rows; ++r) {
     double square = 0.0;
     for (int c = 0; c < 3; ++c) square += set.weights[r][c] * y[c] * y[c];
@@ -199,19 +199,19 @@ bool SplineSolver::Memory::is_row(const PointMap& map, int k, double limit, cons
   return false;
 }
 
-void SplineSolver::Memory::set_joints(const std::vector<Joint>& joints) {
-  for (std::size_t k = 0; k < joints.size(); ++k) {
-    for (int b = 0; b < 3; ++b) x_[k].v[b] = padded(joints[k].col(b));
+void SplineSolver::Memory::set_knots(const std::vector<Knot>& knots) {
+  for (std::size_t k = 0; k < knots.size(); ++k) {
+    for (int b = 0; b < 3; ++b) x_[k].v[b] = padded(knots[k].col(b));
   }
 }
 
-Joint SplineSolver::Memory::joint(int k) const {
-  Joint joint;
+Knot SplineSolver::Memory::knot(int k) const {
+  Knot knot;
   for (int b = 0; b < 3; ++b) {
     const Lanes& v = x_[std::size_t(k)].v[b];
-    joint.col(b) = Vec3(v[0], v[1], v[2]);
+    knot.col(b) = Vec3(v[0], v[1], v[2]);
   }
-  return joint;
+  return knot;
 }
 
 // The guess has corners, and accelerations many times too large. The smoothest spline near it,

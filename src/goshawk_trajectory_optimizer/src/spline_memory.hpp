@@ -17,14 +17,14 @@ struct SplineSolver::Memory {
   /// Slacks near what the guess gives, multipliers that make every product equal: a start on the
   /// central path, for the price of one pass.
   void start();
-  Joint joint(int k) const;
-  void set_joints(const std::vector<Joint>& joints);
+  Knot knot(int k) const;
+  void set_knots(const std::vector<Knot>& knots);
 
  private:
   void smooth_guess();
-  void load_joints(const SplineProblem& problem);
+  void load_knots(const SplineProblem& problem);
   void load_faces(const SplineProblem& problem);
-  void load_planes(std::span<const Face> faces);
+  void load_planes(std::span<const HalfSpace> faces);
   void load_limits(const SplineProblem& problem);
   void load_limit(const SplineProblem& problem, int k, int order, LimitLanes& to);
   bool is_row(const PointMap& map, int k, double limit, const LimitSet& set);
@@ -39,10 +39,10 @@ struct SplineSolver::Memory {
   std::vector<Triple> x_, dx_, rhs_, rates_;
   std::vector<Jerk> jerk_;
   std::vector<FaceRange> ranges_;
-  std::vector<FacePlanes> planes_;
+  std::vector<FourFaces> planes_;
   std::vector<Row> faces_;
   std::vector<LimitLanes> velocity_, acceleration_, jerk_limit_;
-  std::vector<JointSums> joints_;
+  std::vector<KnotSums> knots_;
   std::vector<PieceSums> pieces_;
   std::vector<Panel> panels_;
 };

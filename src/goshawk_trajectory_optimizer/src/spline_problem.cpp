@@ -7,7 +7,7 @@ void SplineProblem::clear() {
   v_max.clear();
   a_max.clear();
   j_max.clear();
-  joints.clear();
+  knots.clear();
   face_points.clear();
   faces.clear();
   start_rate.setZero();

@@ -7,10 +7,10 @@ namespace {
 // A control point is y = sum_b m_b x_b, and m_b a power of the duration T: of its logarithm it is
 // a linear function, sum_b power_b m_b x_b.
 double faces_slope(const SplineState& s, const FaceRange& range) {
-  const Lanes* x = s.x + 3 * range.joint;
+  const Lanes* x = s.x + 3 * range.knot;
   const Lanes dy = range.map[1] * x[1] + 2.0 * range.map[2] * x[2];
   Lanes slope = {};
-  const FacePlanes* n = s.planes + range.planes;
+  const FourFaces* n = s.planes + range.planes;
   for (int i = range.begin; i < range.end; ++i, ++n) {
     slope += s.faces[i].z * (n->nx * dy[0] + n->ny * dy[1] + n->nz * dy[2]);
   }
@@ -55,9 +55,9 @@ void SplineSolver::time_slopes(std::vector<double>& slopes) const {
   slopes.assign(std::size_t(s.last), 0.0);
   for (int p = 0; p < s.face_points; ++p) {
     const FaceRange& range = s.ranges[p];
-    // The points c1 and c2 of a piece move with its first joint's velocity, c3 and c4 against its
+    // The points c1 and c2 of a piece move with its first knot's velocity, c3 and c4 against its
     // second's.
-    const int piece = range.map[1] > 0.0 ? range.joint : range.joint - 1;
+    const int piece = range.map[1] > 0.0 ? range.knot : range.knot - 1;
     if (range.map[1] == 0.0) continue;
     slopes[std::size_t(piece)] += faces_slope(s, range);
   }

@@ -39,8 +39,8 @@ SplineSolver::Outcome SplineSolver::solve(const SplineProblem& problem, const Se
     out.status = Status::infeasible;
     return out;
   }
-  solution_.resize(problem.joints.size());
-  for (int k = 0; k <= problem.pieces(); ++k) solution_[std::size_t(k)] = memory_->joint(k);
+  solution_.resize(problem.knots.size());
+  for (int k = 0; k <= problem.pieces(); ++k) solution_[std::size_t(k)] = memory_->knot(k);
   return out;
 }
 
@@ -87,9 +87,9 @@ bool SplineSolver::needs_more_time(const SplineProblem& problem, const Settings&
   return false;
 }
 
-double SplineSolver::lagrangian(const std::vector<Joint>& joints, double eta) {
+double SplineSolver::lagrangian(const std::vector<Knot>& knots, double eta) {
   SplineState& s = memory_->state;
-  memory_->set_joints(joints);
+  memory_->set_knots(knots);
   s.eta = eta;
   spline_kernels().linearise(s);
   return s.objective + s.proof - s.gap;  // z'g = z'(g + s) - z's

@@ -6,11 +6,6 @@
 // compiled for several instruction sets and must not instantiate anything that others share.
 namespace goshawk::trajectory_optimizer {
 
-/// Four faces, n.y <= offset. One that only fills up the four has no normal.
-struct FacePlanes {
-  Lanes nx, ny, nz, offset;
-};
-
 /// What belongs to four constraints; weight (z / s) and dz are computed where they are needed: a
 /// long trajectory has to fit into the processor's cache.
 struct Row {
@@ -20,10 +15,10 @@ struct Row {
   Lanes target;  // what s z is to become: ds dz of the predictor, then what dz is made of
 };
 
-/// A control point y = p + beta v + gamma a of one joint, rows begin .. end - 1 and their planes,
+/// A control point y = p + beta v + gamma a of one knot, rows begin .. end - 1 and their planes,
 /// from `planes` on. Points with the same faces share them.
 struct FaceRange {
-  int joint, begin, end, planes;
+  int knot, begin, end, planes;
   double map[3];  // 1, beta, gamma
 };
 
@@ -34,7 +29,7 @@ inline constexpr int kMostRows = 3;
 ///   |y|_r^2 / e <= e      (acceleration, jerk)
 /// y in units of the limit. A lane without a point has a map of zero and e = 1.
 struct LimitLanes {
-  Lanes map[6];  // of p, v, a of the first joint and of the second
+  Lanes map[6];  // of p, v, a of the first knot and of the second
   Lanes e1, e0;
   Lanes y[3];
   Lanes e, inverse_e;
@@ -50,17 +45,17 @@ struct LimitSet {
   double weights[kMostRows][3] = {};  // of the components of y in each row's norm
 };
 
-/// Sums over all points of one joint. Blocks of the Hessian are symmetric 3 x 3 matrices kept as
-/// xx xy xz yy | yz zz - -; the joint's are pp, vp, ap, vv, av, aa.
-struct JointSums {
+/// Sums over all points of one knot. Blocks of the Hessian are symmetric 3 x 3 matrices kept as
+/// xx xy xz yy | yz zz - -; the knot's are pp, vp, ap, vv, av, aa.
+struct KnotSums {
   Lanes block[6][2];
-  Lanes border[3];  // Hessian by the joint and eta
+  Lanes border[3];  // Hessian by the knot and eta
   Lanes cost[3];    // gradient of the cost
   Lanes dual[3];    // gradient of the constraints times multipliers
   Lanes pull[3];    // right-hand side from the constraints
 };
 
-/// Blocks of the Hessian by the second joint of a piece (rows) and the first: pp, pv, pa, vp, ...
+/// Blocks of the Hessian by the second knot of a piece (rows) and the first: pp, pv, pa, vp, ...
 struct PieceSums {
   Lanes block[9][2];
 };
@@ -75,7 +70,7 @@ struct Panel {
 
 /// Everything a kernel works on.
 struct SplineState {
-  int last = 0;  // index of the last joint = number of pieces
+  int last = 0;  // index of the last knot = number of pieces
   bool scale = true;
   bool ends_move = false;
   int rows = 1;                       // of each limit point
@@ -84,19 +79,19 @@ struct SplineState {
   double degree = 1.0;  // number of products s z
   double time_weight = 0.0;
 
-  Lanes* x = nullptr;  // 3 a joint: p, v, a
+  Lanes* x = nullptr;  // 3 a knot: p, v, a
   Lanes* dx = nullptr;
   const Lanes* start_rate = nullptr;
   const Lanes* goal_rate = nullptr;
   const double* jerk = nullptr;  // 36 a piece
   FaceRange* ranges = nullptr;
-  const FacePlanes* planes = nullptr;
+  const FourFaces* planes = nullptr;
   Row* faces = nullptr;
   LimitSet velocity, acceleration, jerk_limit;
-  JointSums* joints = nullptr;
+  KnotSums* knots = nullptr;
   PieceSums* pieces = nullptr;
   Panel* panels = nullptr;
-  Lanes* rhs = nullptr;  // 3 a joint, packed: nine values
+  Lanes* rhs = nullptr;  // 3 a knot, packed: nine values
 
   double eta = 1.0, deta = 0.0;
   double step = 0.0;  // that x has taken already and the rows take with the next pass

@@ -13,13 +13,12 @@ constexpr int kMostLooks = 40;      // along the curve, from a switch
 constexpr double kLeastStay = 0.1;  // of a longest piece, for a polytope
 
 /// The trajectory of a plan, by time.
-class Flight {
+class Curve {
  public:
-  explicit Flight(const Plan& plan) {
+  explicit Curve(const Plan& plan) {
     begins_s_.push_back(0.0);
     for (std::size_t k = 0; k < plan.durations_s.size(); ++k) {
-      pieces_.push_back(
-          BezierPiece::between(plan.joints[k], plan.joints[k + 1], plan.durations_s[k]));
+      pieces_.push_back(plan.piece(k));
       begins_s_.push_back(begins_s_.back() + plan.durations_s[k]);
     }
   }
@@ -37,13 +36,13 @@ class Flight {
 };
 
 /// How far from `from_s`, in steps, the flight stays in a polytope.
-double reach_s(const Flight& flight, const Polytope& polytope, double from_s, double step_s,
+double reach_s(const Curve& curve, const Polytope& polytope, double from_s, double step_s,
                double beyond_m) {
   double t = from_s;
   for (int i = 0; i < kMostLooks; ++i) {
     const double next = t + step_s;
-    if (next <= 0.0 || next >= flight.duration_s()) break;
-    if (!(polytope.violation(flight.at(next).position) <= beyond_m)) break;
+    if (next <= 0.0 || next >= curve.duration_s()) break;
+    if (!(polytope.violation(curve.at(next).position) <= beyond_m)) break;
     t = next;
   }
   return t;
@@ -51,12 +50,12 @@ double reach_s(const Flight& flight, const Polytope& polytope, double from_s, do
 
 }  // namespace
 
-double move_switches(const Request& request, const Config& config, std::span<const double> slopes,
-                     double beyond_m, Plan& plan) {
-  const auto& polytopes = request.corridor.polytopes;
+double move_switches(const PlanRequest& request, const Corridor& corridor, const Config& config,
+                     std::span<const double> slopes, double beyond_m, Plan& plan) {
+  const auto& polytopes = corridor.polytopes;
   const std::size_t n = polytopes.size();
-  const Flight flight(plan);
-  const double total_s = flight.duration_s();
+  const Curve curve(plan);
+  const double total_s = curve.duration_s();
   const Cutter cutter = Cutter::of(request, config, total_s, plan.at_moving_end);
   // What a moment in each polytope costs: seconds of flight a second.
   std::vector<double> switches_s(n + 1, 0.0), worth(n, 0.0);
@@ -74,7 +73,7 @@ double move_switches(const Request& request, const Config& config, std::span<con
     const double gain = worth[k - 1] - worth[k];  // of an earlier switch
     const double step_s = (gain > 0.0 ? -kLook : kLook) * cutter.longest_s;
     const Polytope& other = polytopes[gain > 0.0 ? k : k - 1];
-    const double way_s = reach_s(flight, other, switches_s[k], step_s, beyond_m) - switches_s[k];
+    const double way_s = reach_s(curve, other, switches_s[k], step_s, beyond_m) - switches_s[k];
     const double move_s = std::min(1.0, std::abs(gain)) * way_s;
     switches_s[k] += move_s;
     gain_s += std::abs(gain * move_s);
@@ -89,13 +88,13 @@ double move_switches(const Request& request, const Config& config, std::span<con
   }
   plan.durations_s.clear();
   plan.polytopes.clear();
-  plan.joints.resize(1);
+  plan.knots.resize(1);
   for (std::size_t k = 0; k < n; ++k) {
     cutter.cut(switches_s[k], switches_s[k + 1] - switches_s[k], [&](double t_s, double piece_s) {
-      append(plan, piece_s, int(k), flight.at(switches_s[k] + t_s));
+      append(plan, piece_s, int(k), curve.at(switches_s[k] + t_s));
     });
   }
-  plan.joints.back() = request.goal;
+  plan.knots.back() = request.goal;
   return gain_s / total_s;
 }
 

@@ -3,17 +3,35 @@
 #include <utility>
 
 #include "goshawk/trajectory_optimizer/request_check.hpp"
-#include "method.hpp"
+#include "goshawk/trajectory_optimizer/yaw.hpp"
+#include "strategies.hpp"
 
 namespace goshawk::trajectory_optimizer {
 namespace {
 
-constexpr double kLongest_s = 1e6;
+// When to arrive; nothing: as soon as the limits allow.
+std::optional<double> arrival_s(const Task& task, const Flight& soonest) {
+  if (task.request.duration_s > 0.0) return task.request.duration_s;
+  const double extra = task.config.extra_time;
+  if (extra > 0.0) return (1.0 + extra) * soonest.certified.duration_s();
+  return {};
+}
+
+Result<Flight> answer(const Task& task) {
+  auto soonest = fastest(task);
+  if (!soonest) return no_flight(task);
+  auto flight = within_vehicle(task, *std::move(soonest));
+  if (!flight) return flight;
+  if (const auto duration_s = arrival_s(task, *flight)) {
+    return arrive_after(task, *duration_s, *std::move(flight));
+  }
+  return flight;
+}
 
 }  // namespace
 
 TrajectoryOptimizer::TrajectoryOptimizer(const Config& config)
-    : method_(std::make_unique<Method>(config)) {}
+    : config_(config), workspace_(std::make_unique<Workspace>()) {}
 TrajectoryOptimizer::TrajectoryOptimizer(TrajectoryOptimizer&&) noexcept = default;
 TrajectoryOptimizer& TrajectoryOptimizer::operator=(TrajectoryOptimizer&&) noexcept = default;
 TrajectoryOptimizer::~TrajectoryOptimizer() = default;
@@ -32,28 +50,19 @@ Status TrajectoryOptimizer::reconfigure(const Config& config) {
   return success();
 }
 
-Result<Solution> TrajectoryOptimizer::optimise(const Corridor& corridor, const FlatState& start,
-                                               const FlatState& goal, const Limits& limits,
-                                               const Query& query) {
-  if (auto status = check_request(corridor, start, goal, limits); !status) return status.error();
-  if (!(query.duration_s >= 0.0 && query.duration_s <= kLongest_s)) {
-    return fail(ErrorCode::invalid_input, "a duration of " + std::to_string(query.duration_s) +
-                                              " s was asked for: 0 (soon) or up to 1e6 s is meant");
-  }
-  return method_->answer({corridor, start, goal, limits, query.duration_s, &query.out_of_time});
-}
-
-Result<Solution> TrajectoryOptimizer::stop(const Polytope& free_space, const FlatState& start,
-                                           const Limits& limits) {
-  return method_->stop(free_space, start, limits);
+Result<Solution> TrajectoryOptimizer::optimise(const PlanRequest& request, const Corridor& corridor,
+                                               const std::function<bool()>& out_of_time) {
+  if (auto status = check_request(request, corridor); !status) return status.error();
+  Effort effort;
+  auto flight = answer({request, corridor, config_, *workspace_, effort, &out_of_time});
+  if (!flight) return flight.error();
+  auto yaw = plan_yaw(flight->certified.trajectory(), request, config_);
+  return Solution{std::move(flight->certified), std::move(yaw), flight->jerk_cost,
+                  effort.iterations, effort.solves};
 }
 
 std::string_view TrajectoryOptimizer::implementation() const {
-  const std::string& method = method_->config().method;
-  if (method == "thesis") return "bezier-thesis";
-  if (method == "minimum_snap") return "polynomial-minimum-snap";
-  if (method == "polynomial") return "polynomial-rechecked";
-  return method == "fixed" ? "bezier-fixed" : "bezier-scale";
+  return config_.method == Method::fixed ? "bezier-fixed" : "bezier-scale";
 }
 
 }  // namespace goshawk::trajectory_optimizer

@@ -16,19 +16,19 @@ using test::random_instance;
 using Status = ActiveSetSolver::Status;
 
 // Two pieces from rest to rest along x, from (0, 0, 0) to (2, 0, 0), with wide limits: without a
-// face the joint between them is (1, 0, 0).
+// face the knot between them is (1, 0, 0).
 SplineProblem two_pieces() {
   SplineProblem problem;
   problem.scale = false;
   problem.durations = {1.0, 1.0};
   problem.v_max = {100.0, 100.0};
   problem.a_max = {100.0, 100.0};
-  problem.joints.assign(3, Joint::Zero());
-  problem.joints[2].col(0) = Vec3(2, 0, 0);
+  problem.knots.assign(3, Knot::Zero());
+  problem.knots[2].col(0) = Vec3(2, 0, 0);
   return problem;
 }
 
-// A face for the position of the joint in the middle.
+// A face for the position of the knot in the middle.
 void add_face(SplineProblem& problem, const Vec3& normal, double offset) {
   problem.faces.push_back({normal, offset});
   const int end = int(problem.faces.size());
@@ -39,22 +39,22 @@ void add_face(SplineProblem& problem, const Vec3& normal, double offset) {
 }
 
 // The largest amount by which control points leave their faces and their limits.
-double violation(const SplineProblem& problem, const std::vector<Joint>& joints) {
+double violation(const SplineProblem& problem, const std::vector<Knot>& knots) {
   double worst = 0.0;
   for (const FacePoint& point : problem.face_points) {
-    const Vec3 y = joints[std::size_t(point.joint)] * point.map;
+    const Vec3 y = knots[std::size_t(point.knot)] * point.map;
     for (int i = point.begin; i < point.end; ++i) {
-      const Face& face = problem.faces[std::size_t(i)];
-      worst = std::max(worst, face.normal.dot(y) - face.offset);
+      const HalfSpace& face = problem.faces[std::size_t(i)];
+      worst = std::max(worst, face.normal.dot(y) - face.offset_m);
     }
   }
   for (std::size_t k = 0; k < problem.durations.size(); ++k) {
     for (int j = 0; j < 5 && problem.norm == LimitNorm::euclidean; ++j) {
       const double T = problem.durations[k];
-      const Vec3 v = velocity_point(j, T)(joints[k], joints[k + 1]);
+      const Vec3 v = velocity_point(j, T)(knots[k], knots[k + 1]);
       worst = std::max(worst, v.norm() - problem.v_max[k]);
       if (j == 4) continue;
-      const Vec3 a = acceleration_point(j, T)(joints[k], joints[k + 1]);
+      const Vec3 a = acceleration_point(j, T)(knots[k], knots[k + 1]);
       worst = std::max(worst, a.norm() - problem.a_max[k]);
     }
   }
@@ -84,7 +84,7 @@ TEST(ActiveSetSolver, DecidesAsTheInteriorPointDoes) {
     ++(outcome.status == Status::solved ? solved : infeasible);
     if (outcome.status != Status::solved) continue;
     EXPECT_NEAR(outcome.objective, truth.objective, 1e-7 * (1e-3 + truth.objective));
-    EXPECT_LT(violation(instance.problem, solver.joints()), 1e-8);
+    EXPECT_LT(violation(instance.problem, solver.knots()), 1e-8);
     EXPECT_LE(outcome.primal_residual, 1e-9);
   }
   EXPECT_GE(solved, 1500);
@@ -100,7 +100,7 @@ TEST(ActiveSetSolver, WithoutABindingConstraintTheFirstPointIsTheAnswer) {
   EXPECT_EQ(outcome.status, Status::solved);
   EXPECT_EQ(outcome.iterations, 0);
   EXPECT_EQ(solver.binding(), 0);
-  EXPECT_LT((solver.joints()[1].col(0) - Vec3(1, 0, 0)).norm(), 1e-12);
+  EXPECT_LT((solver.knots()[1].col(0) - Vec3(1, 0, 0)).norm(), 1e-12);
   // 720 L^2 / T^5, halved: the least integral of the squared jerk from rest to rest.
   EXPECT_NEAR(outcome.objective, 0.5 * 720.0 * 4.0 / 32.0, 1e-9);
 }
@@ -113,7 +113,7 @@ TEST(ActiveSetSolver, OneFaceBindsExactly) {
   EXPECT_EQ(outcome.status, Status::solved);
   EXPECT_EQ(outcome.iterations, 1);
   EXPECT_EQ(solver.binding(), 1);
-  EXPECT_NEAR(solver.joints()[1](2, 0), 0.5, 1e-12);
+  EXPECT_NEAR(solver.knots()[1](2, 0), 0.5, 1e-12);
 }
 
 // The same faces again, thousands of them, change nothing: not the answer, and hardly the work.
@@ -126,15 +126,15 @@ TEST(ActiveSetSolver, ThousandsOfCopiesOfFacesChangeNothing) {
     if (!instance.inside) continue;
     const auto once = solver.solve(instance.problem, {});
     if (once.status != Status::solved) continue;
-    const auto joints = solver.joints();
+    const auto knots = solver.knots();
     SplineProblem many = instance.problem;
     many.faces.clear();
     for (FacePoint& point : many.face_points) {
       const int begin = int(many.faces.size());
       for (int copy = 0; copy < 50; ++copy) {
         for (int i = point.begin; i < point.end; ++i) {
-          Face face = instance.problem.faces[std::size_t(i)];
-          if (copy % 3 == 1) face.offset += 1e-3 * copy;  // behind, parallel
+          HalfSpace face = instance.problem.faces[std::size_t(i)];
+          if (copy % 3 == 1) face.offset_m += 1e-3 * copy;  // behind, parallel
           many.faces.push_back(face);
         }
       }
@@ -145,7 +145,7 @@ TEST(ActiveSetSolver, ThousandsOfCopiesOfFacesChangeNothing) {
     const auto outcome = solver.solve(many, {});
     EXPECT_EQ(outcome.status, Status::solved);
     EXPECT_NEAR(outcome.objective, once.objective, 1e-9 * (1.0 + once.objective));
-    EXPECT_LT(difference(joints, solver.joints()), 1e-6);
+    EXPECT_LT(difference(knots, solver.knots()), 1e-6);
   }
   EXPECT_GE(compared, 20);
 }
@@ -158,7 +158,7 @@ TEST(ActiveSetSolver, AFlatPolytopeHasAnAnswer) {
   add_face(problem, Vec3(0, 0, -1), -0.25);
   const auto outcome = solver.solve(problem, {});
   EXPECT_EQ(outcome.status, Status::solved);
-  EXPECT_NEAR(solver.joints()[1](2, 0), 0.25, 1e-9);
+  EXPECT_NEAR(solver.knots()[1](2, 0), 0.25, 1e-9);
 }
 
 TEST(ActiveSetSolver, ProvesThatFacesExcludeEachOther) {
@@ -198,24 +198,21 @@ TEST(ActiveSetSolver, GivesUpSoonWhereManyBallsBind) {
   kind.segments = 6;
   const Corridor corridor = test::random_corridor(random, kind);
   const FlatState start = test::at_rest(corridor.waypoints_map.front());
-  const FlatState goal = test::at_rest(corridor.waypoints_map.back());
-  const Limits limits;
   const auto soonest =
-      TrajectoryOptimizer::create({}).value().optimise(corridor, start, goal, limits);
+      TrajectoryOptimizer::create({}).value().optimise(test::ask(corridor), corridor);
   ASSERT_TRUE(soonest);
   Plan plan;
-  plan.joints.push_back(start);
-  for (const BezierPiece& piece : soonest->trajectory.pieces) {
+  plan.knots.push_back(start);
+  for (const BezierPiece& piece : soonest->trajectory().pieces) {
     plan.durations_s.push_back(1.001 * piece.duration_s);
     plan.polytopes.push_back(piece.polytope);
-    plan.joints.push_back(start);
-    plan.joints.back().position = piece.control_points.col(5);
+    plan.knots.push_back(start);
+    plan.knots.back().position = piece.control_points.col(5);
   }
   plan.reference_s = plan.duration_s();
   SplineProblem problem;
   Units units;
-  ASSERT_TRUE(
-      make_problem({corridor, start, goal, limits}, plan, false, 1.0, HUGE_VAL, problem, units));
+  ASSERT_TRUE(make_problem(test::ask(corridor), corridor, plan, {.scale = false}, problem, units));
   ActiveSetSolver solver;
   const auto outcome = solver.solve(problem, {.gap = 1e-7});
   EXPECT_EQ(outcome.status, Status::iteration_limit);
@@ -241,8 +238,8 @@ TEST(ActiveSetSolver, AnswersRepeatBitForBitWhateverWentBefore) {
     EXPECT_EQ(a.objective, b.objective);
     EXPECT_EQ(a.gap, b.gap);
     if (a.status != Status::solved) continue;
-    for (std::size_t k = 0; k < used.joints().size(); ++k) {
-      EXPECT_EQ(used.joints()[k], fresh.joints()[k]);
+    for (std::size_t k = 0; k < used.knots().size(); ++k) {
+      EXPECT_EQ(used.knots()[k], fresh.knots()[k]);
     }
   }
 }
@@ -253,7 +250,7 @@ TEST(ActiveSetSolver, OnePieceIsOnlyChecked) {
   problem.durations = {2.0};
   problem.v_max = {100.0};
   problem.a_max = {100.0};
-  problem.joints.erase(problem.joints.begin() + 1);
+  problem.knots.erase(problem.knots.begin() + 1);
   EXPECT_EQ(solver.solve(problem, {}).status, Status::solved);
   problem.v_max = {1.0};  // 15/8 of the mean speed of 1 at the middle, more in the hull
   EXPECT_EQ(solver.solve(problem, {}).status, Status::infeasible);
@@ -270,7 +267,7 @@ TEST(ActiveSetSolver, WhatIsNotFiniteIsNotSolved) {
     add_face(problem, Vec3(bad, 0, 1), 1.0);
     EXPECT_EQ(solver.solve(problem, {}).status, Status::numerical_trouble);
     problem = two_pieces();
-    problem.joints[2](0, 0) = bad;
+    problem.knots[2](0, 0) = bad;
     EXPECT_EQ(solver.solve(problem, {}).status, Status::numerical_trouble);
   }
   for (const double duration : {0.0, -1.0, 1e-300, 1e300, kNan, double(INFINITY)}) {

@@ -7,7 +7,7 @@
 
 #include "corridor_maker.hpp"
 #include "goshawk/trajectory_optimizer/active_set_solver.hpp"
-#include "goshawk/trajectory_optimizer/plan.hpp"
+#include "goshawk/trajectory_optimizer/plan_problem.hpp"
 #include "goshawk/trajectory_optimizer/spline_solver.hpp"
 
 namespace {
@@ -51,19 +51,18 @@ TEST(SplineSolver, AllocatesNothingOnceItHasSeenAProblemOfThatSize) {
     for (const LimitNorm norm :
          {LimitNorm::euclidean, LimitNorm::per_axis, LimitNorm::horizontal_vertical}) {
       const auto corridor = test::random_corridor(random, {});
-      const FlatState start = test::at_rest(corridor.waypoints_map.front());
-      const FlatState goal = test::at_rest(corridor.waypoints_map.back());
       const Limits limits{.norm = norm, .j_max_m_s3 = 8.0};
-      const Request request{corridor, start, goal, limits};
-      Plan plan = cut_trapezoid(request, {});
+      const PlanRequest request = test::ask(corridor, limits);
+      Plan plan = cut_trapezoid(request, corridor, {});
       for (double& duration : plan.durations_s) duration *= 3.0;
+      const ProblemSettings settings{.scale = scale, .time_weight = 100.0};
       SplineProblem problem;
       Units units;
       SplineSolver solver;
-      ASSERT_TRUE(make_problem(request, plan, scale, 100.0, HUGE_VAL, problem, units));
+      ASSERT_TRUE(make_problem(request, corridor, plan, settings, problem, units));
       const auto first = solver.solve(problem, {});
       const long before = allocations;
-      ASSERT_TRUE(make_problem(request, plan, scale, 100.0, HUGE_VAL, problem, units));
+      ASSERT_TRUE(make_problem(request, corridor, plan, settings, problem, units));
       const auto second = solver.solve(problem, {});
       EXPECT_EQ(allocations, before);
       EXPECT_EQ(first.status, SplineSolver::Status::solved);
@@ -75,16 +74,14 @@ TEST(SplineSolver, AllocatesNothingOnceItHasSeenAProblemOfThatSize) {
 TEST(ActiveSetSolver, AllocatesNothingOnceItHasSeenAProblemOfThatSize) {
   Random random(15);
   const auto corridor = test::random_corridor(random, {});
-  const FlatState start = test::at_rest(corridor.waypoints_map.front());
-  const FlatState goal = test::at_rest(corridor.waypoints_map.back());
   const Limits limits{.j_max_m_s3 = 8.0};
-  const Request request{corridor, start, goal, limits};
-  Plan plan = cut_trapezoid(request, {});
+  const PlanRequest request = test::ask(corridor, limits);
+  Plan plan = cut_trapezoid(request, corridor, {});
   for (double& duration : plan.durations_s) duration *= 2.0;
   SplineProblem problem;
   Units units;
   ActiveSetSolver solver;
-  ASSERT_TRUE(make_problem(request, plan, false, 1.0, HUGE_VAL, problem, units));
+  ASSERT_TRUE(make_problem(request, corridor, plan, {.scale = false}, problem, units));
   const auto first = solver.solve(problem, {});
   ASSERT_EQ(first.status, SplineSolver::Status::solved);
   EXPECT_GE(solver.binding(), 1);

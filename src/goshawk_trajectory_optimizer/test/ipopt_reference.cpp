@@ -75,14 +75,14 @@ class Spline {
 
  private:
   FlatState state(int k, const VectorXd& x) const {
-    Joint joint = problem_.joints[std::size_t(k)];
+    Knot knot = problem_.knots[std::size_t(k)];
     if (k > 0 && k < problem_.pieces()) {
-      joint = Eigen::Map<const Joint>(x.data() + 9 * (k - 1));
+      knot = Eigen::Map<const Knot>(x.data() + 9 * (k - 1));
     }
     FlatState s;
-    s.position = joint.col(0);
-    s.velocity = joint.col(1);
-    s.acceleration = joint.col(2);
+    s.position = knot.col(0);
+    s.velocity = knot.col(1);
+    s.acceleration = knot.col(2);
     return s;
   }
 
@@ -227,7 +227,7 @@ Bool hessian(Index n, Number*, Bool, Number factor, Index m, Number* lambda, Boo
       const auto R = row.R.middleCols(first, count);
       H.block(first, first, count, count) +=
           2.0 * std::max(lambda[i], 0.0) * R.transpose() * row.sign.asDiagonal() * R;
-      // The square of eta stands apart from the columns of the joints.
+      // The square of eta stands apart from the columns of the knots.
       if (first + count < n) {
         const VectorXd last = row.R.col(n - 1);
         H(n - 1, n - 1) += 2.0 * std::max(lambda[i], 0.0) * last.cwiseAbs2().dot(row.sign);
@@ -318,15 +318,15 @@ ReferenceAnswer solve_with_ipopt(const SplineProblem& problem,
   const Dense dense = densify(problem, polytopes);
   VectorXd x = VectorXd::Zero(dense.n);
   for (int k = 1; k < problem.pieces(); ++k) {
-    Eigen::Map<Joint>(x.data() + 9 * (k - 1)) = problem.joints[std::size_t(k)];
+    Eigen::Map<Knot>(x.data() + 9 * (k - 1)) = problem.knots[std::size_t(k)];
   }
   if (problem.scale) x[dense.n - 1] = 2.0;
   ReferenceAnswer answer;
   answer.solved = minimise_under_all(dense, problem.scale ? 0.0 : -1e20, x, answer.objective);
   if (problem.scale) answer.eta = x[dense.n - 1];
-  answer.joints = problem.joints;
+  answer.knots = problem.knots;
   for (int k = 1; k < problem.pieces(); ++k) {
-    answer.joints[std::size_t(k)] = Eigen::Map<Joint>(x.data() + 9 * (k - 1));
+    answer.knots[std::size_t(k)] = Eigen::Map<Knot>(x.data() + 9 * (k - 1));
   }
   return answer;
 }
@@ -346,7 +346,7 @@ double least_violation_with_ipopt(const SplineProblem& problem,
   }
   VectorXd x = VectorXd::Zero(n);
   for (int k = 1; k < problem.pieces(); ++k) {
-    Eigen::Map<Joint>(x.data() + 9 * (k - 1)) = problem.joints[std::size_t(k)];
+    Eigen::Map<Knot>(x.data() + 9 * (k - 1)) = problem.knots[std::size_t(k)];
   }
   for (const Row& row : dense.rows) x[n - 1] = std::max(x[n - 1], 1.0 + row.value(x) - row.bound);
   double violation = 0.0;

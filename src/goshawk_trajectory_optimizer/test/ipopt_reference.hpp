@@ -13,7 +13,7 @@ struct ReferenceAnswer {
   bool solved = false;
   double objective = 0.0;
   double eta = 1.0;
-  std::vector<Joint> joints;
+  std::vector<Knot> knots;
 };
 
 /// @param polytopes in the problem's units, one for each piece. Ends at rest where it scales.

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "corridor_maker.hpp"
-#include "goshawk/trajectory_optimizer/plan.hpp"
+#include "goshawk/trajectory_optimizer/plan_problem.hpp"
 
 namespace goshawk::trajectory_optimizer::test {
 
@@ -19,7 +19,7 @@ struct Instance {
   Units units;
   bool inside = true;  // of what the ends alone decide
 
-  Request request() const { return {corridor, start, goal, limits}; }
+  PlanRequest request() const { return ask(start, goal, limits); }
   std::vector<Polytope> polytopes_in_units() const {
     std::vector<Polytope> all;
     for (const int k : plan.polytopes) {
@@ -65,14 +65,15 @@ inline Instance random_instance(Random& random, bool scale, double stretch) {
   Config config;
   config.min_pieces = 2;
   config.piece_duration_s = random.uniform(2.0, 10.0);
-  i.plan = cut_trapezoid(i.request(), config);
+  i.plan = cut_trapezoid(i.request(), i.corridor, config);
   for (double& duration : i.plan.durations_s) duration *= stretch * random.uniform(0.8, 1.25);
-  i.inside = make_problem(i.request(), i.plan, scale, std::pow(10.0, random.uniform(-2.0, 2.0)),
-                          HUGE_VAL, i.problem, i.units);
+  const ProblemSettings settings{.scale = scale,
+                                 .time_weight = std::pow(10.0, random.uniform(-2.0, 2.0))};
+  i.inside = make_problem(i.request(), i.corridor, i.plan, settings, i.problem, i.units);
   return i;
 }
 
-inline double difference(const std::vector<Joint>& a, const std::vector<Joint>& b) {
+inline double difference(const std::vector<Knot>& a, const std::vector<Knot>& b) {
   double largest = 0.0;
   for (std::size_t k = 0; k < a.size(); ++k) {
     largest = std::max(largest, (a[k].col(0) - b[k].col(0)).cwiseAbs().maxCoeff());

@@ -47,12 +47,12 @@ TEST(SplineSolver, FixedDurationsGiveIpoptsObjectiveAndSolution) {
     ASSERT_TRUE(truth.solved);
     ++compared;
     EXPECT_NEAR(outcome.objective, truth.objective, 1e-6 * (1.0 + std::abs(truth.objective)));
-    EXPECT_LT(difference(solver.joints(), truth.joints), 1e-3);
+    EXPECT_LT(difference(solver.knots(), truth.knots), 1e-3);
     EXPECT_LE(outcome.primal_residual, 1e-9);
     EXPECT_LE(outcome.gap, 1e-10 * outcome.objective + 1e-12);
     if (!decided) continue;
     EXPECT_NEAR(other.objective, truth.objective, 1e-6 * (1.0 + std::abs(truth.objective)));
-    EXPECT_LT(difference(active_set.joints(), truth.joints), 1e-3);
+    EXPECT_LT(difference(active_set.knots(), truth.knots), 1e-3);
     EXPECT_LE(other.primal_residual, 1e-9);
     EXPECT_LE(other.dual_residual, 1e-7);
     EXPECT_LE(other.gap, 1e-10 * other.objective + 1e-12);
@@ -106,11 +106,11 @@ TEST(SplineSolver, TheLagrangianIsFlatAtASolution) {
     const auto instance = random_instance(random, scale, scale ? 1.0 : 2.5);
     const auto outcome = solver.solve(instance.problem, {.gap = 1e-9});
     if (outcome.status != SplineSolver::Status::solved) continue;
-    const std::vector<Joint> solution = solver.joints();
+    const std::vector<Knot> solution = solver.knots();
     const double at_solution = solver.lagrangian(solution, outcome.eta);
     EXPECT_NEAR(at_solution, outcome.objective, 1e-6 * (1.0 + outcome.objective));
     constexpr double h = 1e-4;
-    const auto slope = [&](const std::vector<Joint>& ahead, const std::vector<Joint>& behind,
+    const auto slope = [&](const std::vector<Knot>& ahead, const std::vector<Knot>& behind,
                            double d_eta) {
       const double up = solver.lagrangian(ahead, outcome.eta + d_eta);
       return (up - solver.lagrangian(behind, outcome.eta - d_eta)) / (2.0 * h);
@@ -148,8 +148,8 @@ TEST(SplineSolver, TimeSlopesAreThoseOfTheLeastCost) {
       const double before = problem.durations[piece];
       problem.durations[piece] *= factor;
       for (FacePoint& point : problem.face_points) {
-        const bool first = point.joint == int(piece) && point.map[1] > 0.0;
-        const bool second = point.joint == int(piece) + 1 && point.map[1] < 0.0;
+        const bool first = point.knot == int(piece) && point.map[1] > 0.0;
+        const bool second = point.knot == int(piece) + 1 && point.map[1] < 0.0;
         if (!first && !second) continue;
         point.map[1] *= problem.durations[piece] / before;
         point.map[2] *= std::pow(problem.durations[piece] / before, 2);
@@ -194,8 +194,9 @@ TEST(SplineSolver, IterationsDoNotGrowWithThePieces) {
     i.corridor = test::random_corridor(random, kind);
     i.start = at_rest(i.corridor.waypoints_map.front());
     i.goal = at_rest(i.corridor.waypoints_map.back());
-    i.plan = cut_trapezoid(i.request(), {});
-    ASSERT_TRUE(make_problem(i.request(), i.plan, true, 100.0, HUGE_VAL, i.problem, i.units));
+    i.plan = cut_trapezoid(i.request(), i.corridor, {});
+    ASSERT_TRUE(make_problem(i.request(), i.corridor, i.plan, {.scale = true, .time_weight = 100.0},
+                             i.problem, i.units));
     const auto outcome = solver.solve(i.problem, {});
     EXPECT_EQ(outcome.status, SplineSolver::Status::solved);
     EXPECT_LT(outcome.iterations, 40) << i.problem.pieces() << " pieces";

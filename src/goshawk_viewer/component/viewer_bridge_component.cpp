@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 #include <algorithm>
 #include <map>
@@ -18,7 +19,7 @@ namespace goshawk::viewer_bridge {
 struct Config {
   std::string address = "127.0.0.1";
   int port = 8765;
-  std::string origins;
+  std::string origins = kDefaultOrigins;
   std::string publish_topics = "goal_pose";
   int queue_mb = 32;
   int clients = 16;
@@ -27,17 +28,17 @@ struct Config {
 template <typename Self, typename Visitor>
 requires std::same_as<std::remove_const_t<Self>, Config>
 void describe(Self& c, Visitor&& visit) {
-  visit("address", c.address, "", "IPv4 address to listen on; who can reach it can send goals",
-        Anything{});
-  visit("port", c.port, "", "TCP port to listen on; 0: any that is free", Range{0, 65535});
+  visit("address", c.address, "",
+        "IPv4 address to listen on; anyone who can reach it can send goals", Anything{});
+  visit("port", c.port, "", "TCP port to listen on; 0: any free one", Range{0, 65535});
   visit("origins", c.origins, "",
-        "web pages that may connect beside local ones and Foxglove's, with commas, or any",
+        "web pages that may connect, as http://host:port with commas between them; any: all",
         Anything{});
   visit("publish_topics", c.publish_topics, "",
-        "topics that clients may publish on, with commas, or any", Anything{});
-  visit("queue_mb", c.queue_mb, "MB", "what may wait for one slow client; the rest is dropped",
+        "topics that clients may publish on, with commas between them; any: all", Anything{});
+  visit("queue_mb", c.queue_mb, "MB", "queue for one slow client; messages beyond it are dropped",
         Range{1, 1024});
-  visit("clients", c.clients, "", "at most this many at once", Range{1, 1000});
+  visit("clients", c.clients, "", "largest number of clients at once", Range{1, 1000});
 }
 
 namespace {
@@ -48,7 +49,7 @@ using namespace goshawk::stage;
 constexpr double kLookAround_s = 0.5;
 constexpr double kServe_s = 0.01;
 constexpr std::size_t kKept = 20;              // newest messages of a latched topic, ...
-constexpr std::size_t kKeptBytes = 1U << 20U;  // ... or one, where they are larger
+constexpr std::size_t kKeptBytes = 1U << 20U;  // ... or one, if they are larger
 
 std::set<std::string> split(const std::string& list) {
   std::set<std::string> words;
@@ -95,7 +96,7 @@ class ViewerBridgeComponent : public Component {
     dds_.every(kLookAround_s, [this] { look_around(); });
     dds_.every(kServe_s, [this] { serve(); });
     thread_ = std::thread([this] { dds_.spin(); });
-    reporter_.ready("listens on ws://" + config_.address + ":" + std::to_string(server_->port()));
+    reporter_.ready(fmt::format("listens on ws://{}:{}", config_.address, server_->port()));
   }
 
   ~ViewerBridgeComponent() override {
@@ -122,7 +123,7 @@ class ViewerBridgeComponent : public Component {
   void look_around() {
     std::map<std::string, Topic> found;
     for (const auto& e : context_->endpoints()) {
-      // Where clients may publish there may be readers alone; Foxglove needs the type to publish.
+      // A topic that clients may publish on may have readers only; Foxglove needs its type.
       if ((!e.writer && !may_publish(e.topic)) || known_.contains(e.topic)) continue;
       const auto type = introspection::find_type(e.type);
       if (!type) continue;
@@ -193,8 +194,8 @@ class ViewerBridgeComponent : public Component {
   /// @return where the client's messages go, or nullptr: a client that sends was told why
   RawPublisher* publisher_for(const ClientEvent& event) {
     const std::string name = event.topic.starts_with('/') ? event.topic.substr(1) : event.topic;
-    // Viewers offer more than is ever sent, Foxglove's 3D panel alone three topics, and it counts
-    // as problems what it is told: only who sends is told.
+    // Viewers advertise more than they ever send (Foxglove's 3D panel three topics), and Foxglove
+    // counts every status as a problem: a client is told only when it sends.
     const bool sends = event.kind == ClientEvent::Kind::published;
     const auto refuse = [&](const std::string& why) {
       const auto sentence = event.topic.substr(0, 100) + ": " + why;
@@ -202,7 +203,7 @@ class ViewerBridgeComponent : public Component {
       return nullptr;
     };
     if (!may_publish(name)) {
-      return refuse("clients may not publish there; publish_topics allows " +
+      return refuse("clients may not publish on this topic; publish_topics allows " +
                     config_.publish_topics);
     }
     if (auto ok = check_topic_name(name); !ok) return refuse(ok.error().message);
@@ -232,13 +233,13 @@ class ViewerBridgeComponent : public Component {
     const auto* type = *introspection::find_type(event.schema_name);
     auto cdr = to_cdr(*type, event);
     if (!cdr) return tell(StatusLevel::error, cdr.error().message);
-    if (publisher->matched() == 0) tell(StatusLevel::warning, "nobody listens there");
+    if (publisher->matched() == 0) tell(StatusLevel::warning, "no node reads this topic");
     if (auto sent = publisher->publish_raw(&*cdr); !sent) {
       tell(StatusLevel::error, sent.error().message);
     }
   }
 
-  // What a client says is CDR is checked: stages must not be the first to look.
+  // CDR from a client is checked here, before it reaches a stage.
   static Result<std::vector<unsigned char>> to_cdr(const introspection::Type& type,
                                                    const ClientEvent& event) {
     if (event.encoding == "cdr") {
@@ -248,7 +249,7 @@ class ViewerBridgeComponent : public Component {
     auto json =
         nlohmann::ordered_json::parse(event.bytes.begin(), event.bytes.end(), nullptr, false);
     rename_nanoseconds(json);
-    if (json.is_discarded()) return fail(ErrorCode::invalid_input, "this is no JSON");
+    if (json.is_discarded()) return fail(ErrorCode::invalid_input, "the message is not valid JSON");
     return introspection::json_to_cdr(type, json);
   }
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "../src/session.hpp"
+#include "goshawk/viewer_bridge/origins.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace goshawk::viewer_bridge;
@@ -23,6 +24,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       if (warning.empty()) std::abort();
     }
   }
-  (void)origin_allowed(all, "http://a.example");
+  if (const auto origins = Origins::parse(all)) (void)origins->allow("http://a.example");
   return 0;
 }

@@ -1,4 +1,4 @@
-// Messages as they are on the wire (XCDR1), read by the schema that the bridge sends with a topic.
+// Reads messages (XCDR1) with the schema that the bridge sends for a topic.
 'use strict';
 Goshawk.Schema = class {
   // @param text ROS 2 .msg text, inner types behind lines of '=' and "MSG: package/Name"

@@ -1,4 +1,4 @@
-// The page of one flight: everything is in the file itself.
+// The page of one flight, with all its data in the file.
 'use strict';
 Goshawk.FlightPage = class extends Goshawk.Page {
   constructor(data) {
@@ -19,7 +19,7 @@ Goshawk.FlightPage = class extends Goshawk.Page {
     this.bindTime();
     this.setTime(this.begin);
     const some = data.obstacles || data.grown || this.legs.length || this.track.length;
-    this.hint(some || !this.view ? '' : 'There is no map, no plan and no flight in this file.');
+    this.hint(some || !this.view ? '' : 'This file holds no map, no plan and no flight.');
   }
 
   framed() {
@@ -88,7 +88,7 @@ Goshawk.FlightPage = class extends Goshawk.Page {
     this.setFacts(facts);
   }
 
-  // What the plan of a moment wants: of the leg that began last, and its end once it is over.
+  // The planned state at a time: of the leg that began last; after its end, its last state.
   plannedAt(t) {
     let leg = null;
     for (const l of this.legs) if (l.trajectory && l.start <= t && (!leg || l.start >= leg.start)) leg = l;
@@ -154,7 +154,7 @@ Goshawk.FlightPage = class extends Goshawk.Page {
     }
   }
 
-  // Wherever the keyboard is, but where these keys mean something else.
+  // Wherever the focus is, except where these keys have another meaning.
   onTimeKey(event) {
     const {id, tagName} = event.target;
     if (id !== 'time' && ['INPUT', 'BUTTON', 'SELECT'].includes(tagName)) return;

@@ -1,7 +1,7 @@
 // A client of the Foxglove WebSocket protocol, version 1.
 'use strict';
 Goshawk.FoxgloveClient = class {
-  // topics: {"odom": message => ...} by the end of the topic's name; onState(text) tells of the link
+  // topics: {"odom": message => ...} by the end of the topic's name; onState(text): of the connection
   constructor(url, topics, onState) {
     Object.assign(this, {url, topics, onState});
     this.connect();

@@ -1,4 +1,4 @@
-// The live page: the same picture, fed by the bridge; a click sends a goal.
+// The live page: the same picture with data from the bridge; a click sends a goal.
 'use strict';
 const kPlotted = 20;     // [s] that the plots show
 const kTracked = 12000;  // samples of the flown track that are kept
@@ -54,11 +54,11 @@ Goshawk.LivePage = class extends Goshawk.Page {
     $('live-state').textContent = this.state.text;
   }
 
-  // What one waits for, and what brings it.
+  // What is still missing, and how to get it.
   missing(linked) {
     const {maps} = this.view || {maps: {grown: true}};
     if (maps.obstacles || maps.grown) return '';
-    if (linked) return 'Connected. No map comes yet: is map_server running,\nin the same ROS_DOMAIN_ID as the bridge?';
+    if (linked) return 'Connected, but no map has come yet. Is map_server running\nwith the same ROS_DOMAIN_ID as the bridge?';
     return `Waiting for a bridge at ${this.url}.\nStart one with: tools/goshawk launch flight_view`;
   }
 
@@ -77,7 +77,7 @@ Goshawk.LivePage = class extends Goshawk.Page {
     this.showMap('grown', voxels);
   }
 
-  // Bricks that changed. One that does not follow is left out: the whole map comes again soon after.
+  // Bricks that changed. An update that does not follow is dropped: the whole map comes soon after.
   onUpdate(m) {
     const grown = this.view && this.view.maps.grown;
     if (!grown || grown.version !== m.from_version) return;
@@ -166,7 +166,7 @@ Goshawk.LivePage = class extends Goshawk.Page {
     this.tell();
   }
 
-  // Maps may change ten times a second: they are drawn as often as leaves time for all else.
+  // Maps may change ten times a second: drawing them takes at most a fifth of the time.
   redrawMap(time) {
     if (!this.mapOld || time < (this.nextMap || 0)) return;
     this.mapOld = false;
@@ -175,7 +175,7 @@ Goshawk.LivePage = class extends Goshawk.Page {
     this.nextMap = time + Math.max(0.2, 5e-3 * (performance.now() - begin));
   }
 
-  // The newest report of each node: how long its stage took, or what is wrong.
+  // The newest report of each node: how long its stage took, or its code, with the sentence as a hint.
   onReport(m) {
     if (m.code === 'ok' && m.request_id === 0) return;
     this.reports.set(m.node, m);
@@ -194,7 +194,7 @@ Goshawk.LivePage = class extends Goshawk.Page {
   }
 
   took(ns) {
-    if (!(ns >= 1000)) return 'ok';  // who only passes things on
+    if (!(ns >= 1000)) return 'ok';  // stages that do not compute
     return ns < 1e5 ? `${Math.round(ns / 1e3)} µs` : `${(ns / 1e6).toFixed(2)} ms`;
   }
 
@@ -229,7 +229,7 @@ Goshawk.LivePage = class extends Goshawk.Page {
   aimAt(event) {
     const goal = this.view.pick(event, Number($('goal-height').value));
     this.view.setAim(goal);
-    this.state.text = goal ? `goal: ${this.place(goal)}` : 'the sky is no goal';
+    this.state.text = goal ? `goal: ${this.place(goal)}` : 'no goal there: the pointer is above the horizon';
     this.tell();
     return goal;
   }
@@ -241,7 +241,7 @@ Goshawk.LivePage = class extends Goshawk.Page {
     const linked = this.state.link === 'connected';
     if (linked) this.client.sendGoal(goal);
     this.sent = linked ? goal : null;
-    this.state.text = linked ? `goal sent: ${this.place(goal)}` : 'not sent: there is no connection';
+    this.state.text = linked ? `goal sent: ${this.place(goal)}` : 'not sent: no connection';
     this.tell();
   }
 
@@ -264,7 +264,7 @@ Goshawk.LivePage = class extends Goshawk.Page {
       if (event.key !== 'Enter') return;
       const goal = event.target.value.split(/[\s,;]+/).filter(Boolean).map(Number);
       if (goal.length === 3 && goal.every(Number.isFinite)) return this.send(goal);
-      this.state.text = 'a goal is three numbers, like 3, 8, 2';
+      this.state.text = 'a goal is three numbers, such as 3, 8, 2';
       this.tell();
     });
   }

@@ -1,10 +1,10 @@
-// What both pages share: theme, legend, facts, plots, the loop that draws.
+// What both pages share: theme, legend, facts, plots, and the drawing loop.
 'use strict';
 const $ = id => document.getElementById(id);
 
 Goshawk.layerNames = [
-  ['obstacles', 'obstacles', t => t.high], ['above', 'what is above the cut', t => t.ghost, 'hollow'],
-  ['grown', 'grown by the vehicle', t => t.grown], ['raw', 'path as searched', t => t.raw, 'thin'],
+  ['obstacles', 'obstacles', t => t.high], ['above', 'above the cut', t => t.ghost, 'hollow'],
+  ['grown', 'too close for the vehicle', t => t.grown], ['raw', 'voxel path', t => t.raw, 'thin'],
   ['pruned', 'pruned path', t => t.pruned, 'thin'], ['corridor', 'corridor', t => t.corridor],
   ['trajectory', 'trajectory, by speed', null], ['flown', 'flown track', t => t.flown, 'thin'],
   ['vehicle', 'vehicle', t => t.accent], ['goals', 'start and goals', t => t.goal, 'halves']];
@@ -89,7 +89,7 @@ Goshawk.Page = class {
     $('follow').setAttribute('aria-pressed', this.view.follow);
   }
 
-  // A narrow window shows the flight first, and the panel when it is wanted.
+  // In a narrow window the panel is folded at first.
   bindFold() {
     const fold = open => {
       $('fold').setAttribute('aria-expanded', open);
@@ -99,7 +99,7 @@ Goshawk.Page = class {
     fold(window.innerWidth > 760);
   }
 
-  // What a pointer does with the picture, by keys.
+  // Keys for what the pointer does.
   onViewKey(event) {
     if (event.ctrlKey || event.metaKey || event.altKey || event.target.type === 'text') return;
     const turns = {a: [-0.1, 0, 1], d: [0.1, 0, 1], w: [0, 0.07, 1], s: [0, -0.07, 1], '+': [0, 0, 0.9],
@@ -110,7 +110,7 @@ Goshawk.Page = class {
     if (key === 'f') this.follow();
   }
 
-  // The heights of the map, and where to cut it at first.
+  // @param at where the map is cut at first [m]
   setCutRange(lower, upper, at) {
     Object.assign($('cut'), {min: lower, max: upper, step: 0.1});
     $('cut').value = at;
@@ -163,7 +163,7 @@ Goshawk.Page = class {
     for (const plot of this.plots) plot.draw(this.now, style);
   }
 
-  // What the picture lacks, in its middle; '' where nothing is missing.
+  // Says in the middle of the picture what is missing; '': nothing.
   hint(text) {
     if ($('hint').textContent !== text) $('hint').textContent = text;
   }

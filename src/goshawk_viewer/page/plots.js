@@ -1,9 +1,9 @@
 // Plots against time on a canvas of their own: what was planned, what was flown, and the limit.
 'use strict';
 Goshawk.Plot = class {
-  // @param limit a dashed line, or null; least: what the axis goes up to at least [unit], so that noise
-  // stays small; absent: what an empty plot says
-  constructor(canvas, {title, unit, limit = null, scale = 1, least = 0.1, absent = 'nothing to show yet'}) {
+  // @param limit of a dashed line, or null; least: lowest upper end of the axis [unit], so that noise
+  // looks small; absent: the text of an empty plot
+  constructor(canvas, {title, unit, limit = null, scale = 1, least = 0.1, absent = 'no data yet'}) {
     Object.assign(this, {canvas, title, unit, limit, scale, least, absent, series: [], zero: 0});
     this.set([0, 1], []);
   }
@@ -28,7 +28,7 @@ Goshawk.Plot = class {
   draw(now, style) {
     const ratio = Math.min(window.devicePixelRatio || 1, 2), c = this.canvas;
     const w = c.clientWidth, h = c.clientHeight;
-    if (!w) return;  // a narrow window shows another one
+    if (!w) return;  // hidden: a narrow window shows one plot
     if (c.width !== Math.round(w * ratio) || c.height !== Math.round(h * ratio)) {
       c.width = Math.round(w * ratio);
       c.height = Math.round(h * ratio);

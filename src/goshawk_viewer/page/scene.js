@@ -52,7 +52,7 @@ Goshawk.View = class {
     this.remake();
   }
 
-  // Everything is made anew from what it shows: simple, and fast enough for a click.
+  // Layers are rebuilt as a whole: simple, and fast enough for a click.
   remake() {
     this.scene.background = new G3.Color(this.theme.sky);
     this.drawMaps();
@@ -139,7 +139,7 @@ Goshawk.View = class {
     material.uniforms.opacity.value = opacity;
     material.depthTest = !hidden;  // what obstacles hide shines through them, faintly
     material.depthWrite = !hidden;
-    material.polygonOffset = true;  // the later one of two lines in one place is seen
+    material.polygonOffset = true;  // of two lines in one place, the later one is seen
     material.polygonOffsetFactor = material.polygonOffsetUnits = -2 * order;
     material.resolution.set(this.canvas.clientWidth || 1, this.canvas.clientHeight || 1);
     this.lineMaterials.add(material);
@@ -229,7 +229,7 @@ Goshawk.View = class {
     this.redraw = true;
   }
 
-  // Where a goal would be [m], with its foot on the floor; null: nowhere.
+  // Where the goal would be [m], with a line down to the floor; null: nowhere.
   setAim(p) {
     this.clear('aim');
     this.redraw = true;
@@ -258,7 +258,7 @@ Goshawk.View = class {
     this.redraw = true;
   }
 
-  // Looks at the points from above, from the side where the fewest obstacles stand in the way.
+  // Looks at the points from above, from the side with the fewest obstacles in between.
   frame(points) {
     const spots = points.length ? points : this.corners();
     const box = new G3.Box3().setFromPoints(spots.map(p => new G3.Vector3(...p)));
@@ -271,14 +271,14 @@ Goshawk.View = class {
     this.setHaze();
   }
 
-  // Of what there is of the map below the cut.
+  // Of the part of the map below the cut.
   corners() {
     const {min, max} = this.bounds();
     const top = Math.max(min.z, Math.min(max.z, this.cut));
     return [min.z, top].flatMap(z => [min.x, max.x].flatMap(x => [min.y, max.y].map(y => [x, y, z])));
   }
 
-  // What lies behind is hazy, as far as the eye is away.
+  // Haze begins behind what the camera looks at.
   setHaze() {
     const away = this.camera.position.distanceTo(this.controls.target);
     const radius = this.bounds().getBoundingSphere(new G3.Sphere()).radius;
@@ -291,7 +291,7 @@ Goshawk.View = class {
     this.redraw = true;
   }
 
-  // Turns around the target [rad], and comes closer (below 1) or goes away.
+  // Turns around the target [rad], and zooms: a scale below 1 comes closer.
   turn(azimuth, elevation, scale) {
     const {camera, controls} = this;
     const [x, y, z] = camera.position.clone().sub(controls.target).toArray();
@@ -302,22 +302,22 @@ Goshawk.View = class {
     this.redraw = true;
   }
 
-  // The map that stands in the way of sight, or nothing.
+  // The map that hides things, or nothing.
   solid() { return this.maps.obstacles || this.maps.grown; }
 
-  // How wide a stripe [pixel] the panel takes: none where it lies over a narrow picture.
+  // The width [pixel] that the panel takes; 0 if it lies over a narrow picture.
   panelWidth() {
     const panel = document.getElementById('panel');
     return window.innerWidth > 760 ? panel.getBoundingClientRect().right : 0;
   }
 
-  // The middle of the picture is the middle of what the panel leaves free.
+  // Centres the picture in the part that the panel leaves free.
   shiftFromPanel() {
     const w = this.canvas.clientWidth || 1, h = this.canvas.clientHeight || 1;
     this.camera.setViewOffset(w, h, -this.panelWidth() / 2, 0, w, h);
   }
 
-  // Where the flight is to be seen: right of the panel, or below it; -1 to 1.
+  // The part of the picture for the flight, right of the panel or below it; -1 to 1.
   freePart() {
     const w = this.canvas.clientWidth || 1, h = this.canvas.clientHeight || 1;
     const left = this.panelWidth(), above = left ? 0 : 50;
@@ -326,7 +326,7 @@ Goshawk.View = class {
             bottom: 2 * below / h - 1, top: 1 - 2 * (below + above) / h};
   }
 
-  // Where the pointer meets the plane of a height. @return [x, y, z], or nothing
+  // @return the place [x, y, z] under the pointer at a height, or nothing
   pick(event, height) {
     const r = this.canvas.getBoundingClientRect();
     const ray = new G3.Raycaster();
@@ -336,7 +336,7 @@ Goshawk.View = class {
     return hit && [hit.x, hit.y, hit.z];
   }
 
-  // Where a point of the map is on the page [pixel].
+  // @return where a point of the map is on the page [pixel]
   project(p) {
     const r = this.canvas.getBoundingClientRect();
     const v = new G3.Vector3(...p).project(this.camera);
@@ -350,7 +350,7 @@ Goshawk.View = class {
     this.renderer.render(this.scene, this.camera);
   }
 
-  // For tests: a drawn frame as numbers. @return {width, height, colors: how many different ones}
+  // For tests: draws a frame. @return {width, height, colors: the number of different ones}
   pixels() {
     this.renderer.render(this.scene, this.camera);
     const gl = this.renderer.getContext();

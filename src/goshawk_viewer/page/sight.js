@@ -1,7 +1,7 @@
-// From where a flight is seen best: found on voxels alone, nothing is drawn for it.
+// The best view of a flight, computed from the voxels alone.
 'use strict';
 
-// The share of the points that obstacles below the cut [m] hide from far away.
+// The share of the points that obstacles below the cut [m] hide from a distant eye.
 // @param way unit vector towards the eye
 Goshawk.hiddenShare = function(map, cut, points, way) {
   if (!map || !points.length) return 0;
@@ -30,7 +30,7 @@ Goshawk.bestCut = function(map, points) {
   return points.length ? lowest : highest;
 };
 
-// How a flight lies on the ground. @return {angle [rad] of its long side, stretch: 0 round, 1 a line}
+// The direction of a flight's long side. @return {angle [rad], stretch: 0 round, 1 a line}
 Goshawk.longSide = function(points) {
   const middle = points.reduce((s, p) => V3.add(s, p, 1 / points.length), [0, 0, 0]);
   let xx = 0, yy = 0, xy = 0;
@@ -41,7 +41,7 @@ Goshawk.longSide = function(points) {
   return {angle: 0.5 * Math.atan2(2 * xy, xx - yy), stretch: Math.hypot(xx - yy, 2 * xy) / (xx + yy + 1e-9)};
 };
 
-// The way from the points to the eye from where the fewest obstacles stand between.
+// The direction from the points to the eye with the fewest obstacles in between.
 // @param tall is the picture higher than wide?
 Goshawk.bestWay = function(map, cut, points, tall) {
   const {angle, stretch} = Goshawk.longSide(points);
@@ -60,8 +60,8 @@ Goshawk.bestWay = function(map, cut, points, tall) {
   return best.way;
 };
 
-// Puts a camera that looks from `way` where it sees all points within a part of its picture, as
-// large as they go. Moves the target, the middle of the points at first.
+// Places a camera that looks from `way` so that all points fill a part of its picture. Moves the
+// target, which is the middle of the points at first.
 // @param free {left, right, bottom, top} of the picture, -1 to 1
 Goshawk.fit = function(camera, target, way, points, free, closest) {
   const reach = Math.max(...points.map(p => target.distanceTo(p)));

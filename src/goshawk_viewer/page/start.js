@@ -1,4 +1,4 @@
-// Which page this is: one of a flight, or a live one.
+// Starts the page of a flight or the live page.
 'use strict';
 window.addEventListener('DOMContentLoaded', () => {
   const data = JSON.parse(document.getElementById('flight').textContent);

@@ -8,8 +8,8 @@ Goshawk.themes = {
           ghost: 0x5f7196, grown: 0x4c6fb8, raw: 0x7c4dbc, pruned: 0x7d6b00, corridor: 0x0a86b0,
           flown: 0x14181f, body: 0x20283a, accent: 0xd3122b, goal: 0x0b8a4b},
 };
-// Slow is blue, fast is orange: bluer to yellower all the way, which every kind of colour vision
-// tells apart, and far from white and from black.
+// Slow is blue, fast is orange: from bluer to yellower all the way, which every kind of colour
+// vision tells apart, and far from white and black. Pictures and markers have the same colours.
 Goshawk.speedColor = function(ratio) {
   const stops = [[0.18, 0.42, 1.0], [0.50, 0.34, 0.96], [0.82, 0.26, 0.70], [0.93, 0.28, 0.34],
                  [1.0, 0.52, 0.10]];

@@ -1,4 +1,4 @@
-// The vehicle as it is drawn.
+// The model of the vehicle.
 'use strict';
 
 // An X of arms with rotors that reach to the body's radius [m], true to scale, x forward.
@@ -31,7 +31,7 @@ Goshawk.vehicleModel = function(radius, theme) {
   model.add(halo(3.4 * r, accent));
   return model;
 
-  // A ring around the vehicle that nothing hides.
+  // A ring around the vehicle, drawn in front of everything.
   function halo(width, color) {
     const canvas = document.createElement('canvas');
     canvas.width = canvas.height = 64;

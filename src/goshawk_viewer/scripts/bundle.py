@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""Puts page, style, scripts and three.js into one file that needs nothing else.
+"""Joins page, style, scripts and three.js into one file that needs nothing else.
 
     bundle.py PAGE_FOLDER THREE_FOLDER STUDIO_FOLDER PAGE_OUTPUT MESSAGES_OUTPUT
 
-The messages' output is what Foxglove Studio draws our messages with.
+MESSAGES_OUTPUT is the script with which Foxglove Studio draws our messages.
 """
 
 import pathlib
@@ -41,7 +41,7 @@ OF OR IN CONNECTION WITH THE SOFTWARE OR THE USE OR OTHER DEALINGS IN THE SOFTWA
 
 def joined(folder, names):
     texts = [(folder / name).read_text(encoding="utf-8") for name in names]
-    # The end of the script element must not stand inside it.
+    # A script must not hold the end of its element.
     return "\n;\n".join(texts).replace("</script", "<\\/script")
 
 
@@ -49,7 +49,7 @@ def main():
     page, three, studio, output, messages = map(pathlib.Path, sys.argv[1:])
     missing = [name for name in THREE if not (three / name).is_file()]
     if missing:
-        sys.exit(f"three.js is not whole in {three}: {missing[0]} is missing; install libjs-three")
+        sys.exit(f"{missing[0]} is missing in {three}: install libjs-three")
     text = (page / "page.html").read_text(encoding="utf-8")
     parts = {"@STYLE@": (page / "style.css").read_text(encoding="utf-8"),
              "@THREE@": NOTICE + joined(three, THREE), "@SCRIPTS@": joined(page, SCRIPTS)}

@@ -1,5 +1,5 @@
-"""Serves a few files of this machine to its browsers, with parts of them (RFC 9110, ranges):
-viewers of recordings ask for the end of a file first, then for what they show."""
+"""Serves a few files to browsers on this machine, in parts where they ask for parts (RFC 9110,
+ranges): a viewer of recordings asks for the end of a file first, then for what it shows."""
 
 import http.server
 import mimetypes
@@ -11,11 +11,21 @@ import threading
 TYPES = {".js": "text/javascript; charset=utf-8", ".html": "text/html; charset=utf-8",
          ".wasm": "application/wasm", ".json": "application/json", ".mcap": "application/octet-stream"}
 CHUNK = 1 << 18
+# The names by which a browser reaches a server that listens on loopback. A page from elsewhere whose
+# name was made to lead here (DNS rebinding) sends its own name.
+OWN_NAMES = {"127.0.0.1", "localhost", "[::1]"}
+
+
+def is_own_host(hosts):
+    """@param hosts the values of all Host headers @return whether the client asked for this machine
+    by one of its own names; the port may be another one, as behind an ssh tunnel"""
+    match = re.fullmatch(r"(\[[^\]]*\]|[^:\[]*)(?::[0-9]{0,5})?", hosts[0]) if len(hosts) == 1 else None
+    return match is not None and match[1].lower() in OWN_NAMES
 
 
 def byte_range(header, size):
-    """@return the first and the last byte that a Range header asks for of `size`; None where it is
-    to be ignored (none, several, or no range of bytes); raises ValueError where nothing is there."""
+    """@return the first and the last byte that a Range header asks for of `size`; None if it is to be
+    ignored (none, several, or no range of bytes); raises ValueError if nothing is there."""
     match = re.fullmatch(r"bytes=(\d*)-(\d*)", (header or "").replace(" ", ""))
     if not match or match[1] == match[2] == "":
         return None
@@ -44,7 +54,7 @@ class Site:
         self.folders[name] = pathlib.Path(folder).resolve()
 
     def find(self, path):
-        """@return bytes, a file's path, or None. Nothing outside of the folders is ever found."""
+        """@return bytes, a file's path, or None; never anything outside of the folders"""
         if path in self.parts:
             return self.parts[path]
         if "\0" in path:
@@ -61,7 +71,7 @@ def handler_of(site):
     class Handler(http.server.BaseHTTPRequestHandler):
         protocol_version = "HTTP/1.1"
         server_version = "goshawk"
-        timeout = 30  # a client that goes quiet does not keep a thread
+        timeout = 30  # a silent client does not hold its thread for ever
 
         def do_GET(self):
             self.answer(with_body=True)
@@ -73,16 +83,21 @@ def handler_of(site):
             name = self.path.split("?")[0]
             content = site.find("/" if name == "/index.html" else name)
             try:
-                if content is None:
-                    self.head(404, "text/plain", 25)
-                    if with_body:
-                        self.wfile.write(b"there is one page here: /")
+                if not is_own_host(self.headers.get_all("Host") or []):
+                    self.refuse(421, b"open this page as http://127.0.0.1 or http://localhost\n", with_body)
+                elif content is None:
+                    self.refuse(404, b"not found; the page is /\n", with_body)
                 elif isinstance(content, bytes):
                     self.give_bytes(content, name, with_body)
                 else:
                     self.give_file(pathlib.Path(content), name, with_body)
             except (BrokenPipeError, ConnectionResetError, TimeoutError):
                 self.close_connection = True
+
+        def refuse(self, status, sentence, with_body):
+            self.head(status, "text/plain", len(sentence))
+            if with_body:
+                self.wfile.write(sentence)
 
         def give_bytes(self, content, name, with_body):
             kind = TYPES.get(pathlib.PurePath(name).suffix, TYPES[".html"])
@@ -104,7 +119,7 @@ def handler_of(site):
                 except ValueError:
                     self.head(416, kind, 0, ("Content-Range", f"bytes */{size}"))
                     return
-                if "If-Range" in self.headers:  # nothing here has a validator to compare with
+                if "If-Range" in self.headers:  # there are no validators to compare with
                     part = None
                 first, last = part or (0, size - 1)
                 extra = [("Content-Range", f"bytes {first}-{last}/{size}")] if part else []
@@ -116,7 +131,7 @@ def handler_of(site):
             file.seek(first)
             while count > 0:
                 chunk = file.read(min(CHUNK, count))
-                if not chunk:  # it became shorter meanwhile: the client sees a broken answer
+                if not chunk:  # the file became shorter: the client sees a broken answer
                     self.close_connection = True
                     return
                 self.wfile.write(chunk)
@@ -135,7 +150,7 @@ def handler_of(site):
 
 
 def start(site, port):
-    """@return the server, which answers in threads of its own; raises OSError on a busy port"""
+    """@return the server, which has its own threads; raises OSError if the port is busy"""
     server = http.server.ThreadingHTTPServer(("127.0.0.1", port), handler_of(site))
     server.daemon_threads = True
     threading.Thread(target=server.serve_forever, daemon=True).start()

@@ -1,15 +1,16 @@
 #!/usr/bin/python3
-"""goshawk view: shows a flight, a recording, or what flies now, in a browser.
+"""goshawk view: shows a flight, a recording, or a live flight in a browser.
 
-    goshawk view                     the newest flight of ./flights
-    goshawk view FLIGHT_FOLDER       that one
-    goshawk view FILE.mcap           what was recorded
-    goshawk view --live              what flies now; starts a bridge where none listens
-    goshawk view --foxglove ...      the same in Foxglove Studio, with a layout of ours
+    goshawk view                     the newest flight in ./flights
+    goshawk view FLIGHT_FOLDER       this flight
+    goshawk view FILE.mcap           this recording
+    goshawk view --live              the flight that is running; starts a bridge if none listens
+    goshawk view --foxglove ...      the same in Foxglove Studio, with Goshawk's layout
 
-Serves it on this machine until Ctrl-C.
+Serves the page on this machine until Ctrl-C.
 """
 
+import http.client
 import json
 import os
 import pathlib
@@ -28,7 +29,7 @@ import page_server
 DONE, NOT_DONE, WRONG_CALL = 0, 1, 2
 MARK = "@FLIGHT@"
 LARGEST_READ_FIRST = 64 << 20  # [byte] of a recording
-AROUND = (5.0, 4.0, 1.0)  # [m] what a live picture shows at least
+AROUND = (5.0, 4.0, 1.0)  # [m] least half-size of a live picture
 
 
 class Fault(Exception):
@@ -51,7 +52,7 @@ def newest_flight():
 
 
 def readable(file):
-    """@return the file, opened once; raises a Fault where it cannot be read"""
+    """@return the file; raises a Fault if it cannot be read"""
     try:
         with open(file, "rb") as opened:
             opened.read(1)
@@ -62,13 +63,13 @@ def readable(file):
 
 
 def part_of(what, name):
-    """The file of that name in a flight folder; a file stands for itself."""
+    """@return the file of that name in a flight folder, or the file itself"""
     path = pathlib.Path(what or newest_flight())
     return readable(path / name if path.is_dir() else path)
 
 
 def page_of_recording(prefix, recording, template=None):
-    """The page of a flight, made from a recording alone. @return its bytes"""
+    """@return the bytes of a page that is made from a recording alone"""
     with tempfile.TemporaryDirectory(prefix="goshawk_view_") as folder:
         page = pathlib.Path(folder) / "flight.html"
         template = template or f"{prefix}/share/goshawk/viewer/page.html"
@@ -84,7 +85,7 @@ def page_of_recording(prefix, recording, template=None):
 
 
 def places_flown(prefix, recording):
-    """Where the recorded flight was: what a picture of it is about. @return [[x, y, z], ...]"""
+    """@return where the recorded flight was, to point the camera: [[x, y, z], ...]"""
     if recording.stat().st_size > LARGEST_READ_FIRST:
         return []
     try:
@@ -93,7 +94,7 @@ def places_flown(prefix, recording):
             template.flush()
             flight = json.loads(page_of_recording(prefix, recording, template.name))
     except (Fault, ValueError):
-        return []  # the studio says itself what it cannot read
+        return []  # the studio itself says what it cannot read
     track = flight["flown"]["p"]
     places = [track[k:k + 3] for k in range(0, len(track), 3)]
     for leg in flight["legs"]:
@@ -102,7 +103,7 @@ def places_flown(prefix, recording):
 
 
 def place_now(prefix):
-    """Around where a vehicle of this domain is now, in a list; [] where none says so soon."""
+    """@return corners around the vehicle of this domain; [] if no odometry comes within 3 s"""
     asked = subprocess.run([f"{prefix}/bin/goshawk", "topic", "echo", "odom", "--once", "--json",
                             "--timeout", "3"], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                            stderr=subprocess.DEVNULL, text=True)
@@ -127,7 +128,7 @@ def place_of(bridge):
     rest = bridge.removeprefix("ws://")
     host, _, port = rest.rstrip("/").rpartition(":")
     if rest == bridge or not host or not port.isdigit() or not 0 < int(port) < 65536:
-        raise Fault("invalid_parameter", f"--bridge is like ws://127.0.0.1:8765, not '{bridge}'",
+        raise Fault("invalid_parameter", f"--bridge must look like ws://127.0.0.1:8765, not '{bridge}'",
                     WRONG_CALL)
     return host, int(port)
 
@@ -140,14 +141,37 @@ def listens(place):
         return False
 
 
-def start_bridge(prefix, place):
-    """Where nobody listens on this machine, a bridge of our own. @return the process, or None"""
-    host, port = place
-    if listens(place) or host not in ("127.0.0.1", "localhost"):
+def refusal(place, origin):
+    """@return why the bridge would refuse a page of this origin, or None; None if none answers"""
+    link = http.client.HTTPConnection(*place, timeout=3)
+    try:
+        link.request("GET", "/", headers={
+            "Connection": "Upgrade", "Upgrade": "websocket", "Origin": origin,
+            "Sec-WebSocket-Version": "13", "Sec-WebSocket-Key": "Z29zaGF3ayB2aWV3IGxpdg==",
+            "Sec-WebSocket-Protocol": "foxglove.websocket.v1"})
+        answer = link.getresponse()
+        return None if answer.status == 101 else answer.read(500).decode(errors="replace").strip()
+    except (OSError, http.client.HTTPException):
         return None
-    process = subprocess.Popen([f"{prefix}/bin/goshawk_container", "viewer_bridge", "--ros-args",
-                                "-p", f"port:={port}"], stdin=subprocess.DEVNULL,
-                               stdout=sys.stderr)
+    finally:
+        link.close()
+
+
+def bridge_for(options, place, page_port):
+    """Makes sure that the page finds a bridge: one that listens must let the page in; on this
+    machine, one is started if none listens. @return the process that was started, or None"""
+    host, port = place
+    if listens(place):
+        why = refusal(place, f"http://127.0.0.1:{page_port}")
+        if why:
+            raise Fault("invalid_parameter", f"the bridge at {options.bridge} refuses this page: {why}")
+        return None
+    if host not in ("127.0.0.1", "localhost"):
+        return None
+    origins = f"http://127.0.0.1:{page_port},http://localhost:{page_port}"
+    process = subprocess.Popen([f"{options.prefix}/bin/goshawk_container", "viewer_bridge",
+                                "--ros-args", "-p", f"port:={port}", "-p", f"origins:={origins}"],
+                               stdin=subprocess.DEVNULL, stdout=sys.stderr)
     for _ in range(100):
         if process.poll() is not None:
             raise Fault("io_failed", "the bridge could not be started: see above")
@@ -164,12 +188,15 @@ def open_browser(url):
         subprocess.Popen([opener, url], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
 
-def serve(options, site, shown):
+def start_server(options, site):
     try:
-        server = page_server.start(site, options.port)
+        return page_server.start(site, options.port)
     except OSError as error:
-        raise Fault("io_failed", f"port {options.port} cannot be had ({error.strerror}): "
+        raise Fault("io_failed", f"port {options.port} cannot be used ({error.strerror}): "
                     "--port takes another, --port 0 any") from None
+
+
+def serve_until_told(options, server, shown):
     url = f"http://127.0.0.1:{server.server_port}/"
     tell(options, {"ok": True, "code": "ok", "message": "", "url": url, "shows": shown})
     if not options.no_open:
@@ -178,7 +205,6 @@ def serve(options, site, shown):
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: done.set())
     done.wait()
-    server.shutdown()
 
 
 def tell(options, result):
@@ -196,7 +222,7 @@ def own_site(options):
     site = page_server.Site()
     if options.live:
         site.add("/", live_page(options.prefix, options.bridge).encode())
-        return site, f"what flies now, by {options.bridge}"
+        return site, f"the flight at {options.bridge}"
     file = part_of(options.what, "flight.html")
     is_page = file.suffix == ".html"
     site.add("/", file.read_bytes() if is_page else page_of_recording(options.prefix, file))
@@ -215,7 +241,7 @@ def foxglove_site(options):
     site.add_folder("/", share / "studio")
     site.add("/", (share / "studio/index.html").read_bytes())
     if options.live:
-        shown, source = f"what flies now, by {options.bridge}", {"bridge": options.bridge}
+        shown, source = f"the flight at {options.bridge}", {"bridge": options.bridge}
         source["places"] = [] if options.check else place_now(options.prefix)
     else:
         recording = part_of(options.what, "flight.mcap")
@@ -227,14 +253,14 @@ def foxglove_site(options):
 
 
 def without_source_map(script):
-    """Half of the studio's largest script is a map for its developers, at the end."""
+    """The second half of the studio's largest script is a source map."""
     text = script.read_bytes()
     mark = text.rfind(b"\n//# sourceMappingURL=data:")
     return text if mark < 0 else text[:mark]
 
 
 def studio_files(prefix):
-    """What npm brought of Foxglove Studio, by its name on the page."""
+    """@return Foxglove Studio's files from npm, by their names on the page"""
     modules = pathlib.Path(os.environ.get("GOSHAWK_NODE_MODULES") or
                            pathlib.Path(prefix).parent / "build/node/node_modules")
     files = {"/assets/index.js": modules / "@foxglove/studio-base/assets/index.js",
@@ -243,7 +269,7 @@ def studio_files(prefix):
     for file in files.values():
         if not file.is_file():
             raise Fault("io_failed", f"Foxglove Studio is not installed ({file} is missing): "
-                        "tools/setup --viewer fetches it, or leave --foxglove out")
+                        "tools/setup --viewer installs it, or leave --foxglove out")
     return files
 
 
@@ -253,10 +279,13 @@ def run(options):
     if options.check:
         tell(options, {"ok": True, "code": "ok", "message": "", "url": None, "shows": shown})
         return
-    bridge = start_bridge(options.prefix, place) if options.live else None
+    server = start_server(options, site)
+    bridge = None
     try:
-        serve(options, site, shown)
+        bridge = bridge_for(options, place, server.server_port) if options.live else None
+        serve_until_told(options, server, shown)
     finally:
+        server.shutdown()
         if bridge:
             bridge.terminate()
             bridge.wait()

@@ -1,5 +1,7 @@
 #include "goshawk/viewer_bridge/server.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <map>
@@ -56,6 +58,7 @@ std::string message_frame(std::uint32_t subscription, std::int64_t stamp_ns,
 
 struct Server::Impl {
   ServerOptions options;
+  Origins origins;
 
   mutable std::mutex mutex;  // of everything below but the sockets
   std::map<std::uint64_t, Client> clients;
@@ -74,22 +77,22 @@ struct Server::Impl {
   }
 
   void close(std::uint64_t client, const std::string& why) {
-    note("client " + std::to_string(client) + " closed: " + why);
+    note(fmt::format("client {} closed: {}", client, why));
     sockets->close(client, why);
   }
 
   std::string reason_to_refuse(const std::vector<std::string>& protocols,
                                const std::string& origin) const {
     if (std::ranges::find(protocols, kProtocol) == protocols.end()) {
-      return std::string("this server speaks ") + kProtocol +
-             "; connect with Foxglove, Lichtblick or goshawk view";
+      return fmt::format("this server speaks {}; connect with Foxglove, Lichtblick or goshawk view",
+                         kProtocol);
     }
-    if (!origin_allowed(origin, options.origins)) {
-      return "pages from " + origin.substr(0, 80) +
-             " may not connect; the parameter origins can allow them";
+    if (!origins.allow(origin)) {
+      return fmt::format("pages from {0} may not connect; -p origins:={0} allows them",
+                         origin.substr(0, 80));
     }
     if (int(clients.size()) < options.clients) return {};
-    return "there are " + std::to_string(options.clients) + " clients already";
+    return fmt::format("the limit of {} clients is reached", options.clients);
   }
 
   std::string on_validate(const std::vector<std::string>& protocols, const std::string& origin) {
@@ -102,7 +105,7 @@ struct Server::Impl {
   void on_opened(std::uint64_t client) {
     const std::scoped_lock lock(mutex);
     clients.emplace(client, Client(client));
-    note("client " + std::to_string(client) + " connected");
+    note(fmt::format("client {} connected", client));
     send_text(client, {{"op", "serverInfo"},
                        {"name", options.name},
                        {"capabilities", {"clientPublish"}},
@@ -118,8 +121,8 @@ struct Server::Impl {
     const auto found = clients.find(client);
     if (found == clients.end()) return;
     const auto missed = found->second.dropped;
-    note("client " + std::to_string(client) + " is gone" +
-         (missed == 0 ? "" : "; it missed " + std::to_string(missed) + " messages"));
+    note(missed == 0 ? fmt::format("client {} left", client)
+                     : fmt::format("client {} left; it missed {} messages", client, missed));
     clients.erase(found);
   }
 
@@ -131,8 +134,8 @@ struct Server::Impl {
     if (session.closed()) return;
     if (!session.within_rate(options.client_messages_per_s, Steady::now())) {
       session.set_closed();
-      return close(client, "more than " + std::to_string(options.client_messages_per_s) +
-                               " messages a second");
+      return close(client,
+                   fmt::format("more than {} messages a second", options.client_messages_per_s));
     }
     auto answer = text ? session.on_text(payload, [&](auto id) { return channels.contains(id); })
                        : session.on_binary(payload);
@@ -153,7 +156,7 @@ struct Server::Impl {
     const auto* subscription = client.session.subscription(channel);
     if (subscription == nullptr) return;
     const std::size_t waiting = sockets->waiting(id);
-    // One message may be larger than the queue, where nothing else waits.
+    // One message may be larger than the queue if nothing else waits.
     if (waiting > 0 && waiting + cdr.size() > options.queue_bytes) return drop(id, client);
     client.full_since = {};
     sockets->send(id, false, message_frame(*subscription, stamp_ns, cdr));
@@ -167,7 +170,7 @@ struct Server::Impl {
     const std::chrono::duration<double> full = now - client.full_since;
     if (full.count() < options.full_queue_s || client.session.closed()) return;
     client.session.set_closed();
-    note("client " + std::to_string(id) + " closed: it does not read what it subscribed to");
+    note(fmt::format("client {} closed: it does not read what it subscribed to", id));
     sockets->cut(id);
   }
 };
@@ -176,13 +179,16 @@ Server::Server(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Server::~Server() = default;
 
 Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options) {
-  const std::string place = "port " + std::to_string(options.port) + " of " + options.address;
+  const std::string place = fmt::format("port {} of {}", options.port, options.address);
   if (options.port < 0 || options.port > 65535) {
     return fail(ErrorCode::invalid_parameter, place + ": ports go from 0 to 65535");
   }
+  auto origins = Origins::parse(options.origins);
+  if (!origins) return origins.error();
   auto impl = std::make_unique<Impl>();
   Impl& s = *impl;
   s.options = options;
+  s.origins = *std::move(origins);
   SocketServer::Callbacks callbacks;
   callbacks.validate = [&s](const auto& p, const auto& o) { return s.on_validate(p, o); };
   callbacks.opened = [&s](std::uint64_t c) { s.on_opened(c); };
@@ -199,11 +205,14 @@ Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options) {
     s.sockets = SocketServer::start(sockets, std::move(callbacks), why, wrong_address);
   }
   if (wrong_address) {
-    return fail(ErrorCode::invalid_parameter, "'" + options.address + "' is no IPv4 address");
+    return fail(ErrorCode::invalid_parameter,
+                fmt::format("'{}' is not an IPv4 address", options.address));
   }
   if (s.sockets == nullptr) {
-    return fail(ErrorCode::io_failed, place + " cannot be had (" + why +
-                                          "): is another bridge there? -p port:=N takes another");
+    return fail(ErrorCode::io_failed,
+                fmt::format("{} cannot be used ({}): is another bridge running? -p port:=N takes "
+                            "another port",
+                            place, why));
   }
   return std::unique_ptr<Server>(new Server(std::move(impl)));
 }

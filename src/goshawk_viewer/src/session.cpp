@@ -1,9 +1,9 @@
 #include "session.hpp"
 
-#include <algorithm>
+#include <fmt/format.h>
+
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <stdexcept>
 
 namespace goshawk::viewer_bridge {
@@ -46,7 +46,7 @@ Session::Answer Session::on_text(const std::string& text,
       for (const auto& s : message.at("subscriptions")) {
         const auto channel = id_of(s.at("channelId"));
         if (!known(channel)) {
-          answer.warnings.push_back("there is no channel " + std::to_string(channel));
+          answer.warnings.push_back(fmt::format("there is no channel {}", channel));
           continue;
         }
         if (subscriptions_.size() >= kMostChannels) break;
@@ -77,10 +77,10 @@ Session::Answer Session::on_text(const std::string& text,
     } else if (op == "unadvertise") {
       for (const auto& id : message.at("channelIds")) published_.erase(id_of(id));
     } else {
-      answer.warnings.push_back("this bridge does not know '" + op.substr(0, 40) + "'");
+      answer.warnings.push_back(fmt::format("unknown operation '{}'", op.substr(0, 40)));
     }
   } catch (const std::exception&) {
-    answer.close = "this is no message of foxglove.websocket.v1";
+    answer.close = "not a foxglove.websocket.v1 message";
   }
   return answer;
 }
@@ -88,7 +88,7 @@ Session::Answer Session::on_text(const std::string& text,
 Session::Answer Session::on_binary(const std::string& bytes) {
   Answer answer;
   if (bytes.size() < 5 || bytes[0] != 1) {
-    answer.close = "this binary is no message of foxglove.websocket.v1";
+    answer.close = "not a binary foxglove.websocket.v1 message";
     return answer;
   }
   std::uint32_t channel = 0;
@@ -97,8 +97,7 @@ Session::Answer Session::on_binary(const std::string& bytes) {
   }
   const auto found = published_.find(channel);
   if (found == published_.end()) {
-    answer.warnings.push_back("channel " + std::to_string(channel) +
-                              " was not advertised by this client");
+    answer.warnings.push_back(fmt::format("channel {} was not advertised by this client", channel));
     return answer;
   }
   ClientEvent event;
@@ -110,26 +109,6 @@ Session::Answer Session::on_binary(const std::string& bytes) {
   event.bytes.assign(bytes.begin() + 5, bytes.end());
   answer.events.push_back(std::move(event));
   return answer;
-}
-
-bool origin_allowed(const std::string& origin, const std::string& extra) {
-  if (origin.empty() || extra == "any") return true;
-  std::istringstream list(extra);
-  for (std::string one; std::getline(list, one, ',');) {
-    if (one == origin) return true;
-  }
-  const auto scheme = origin.find("://");
-  if (scheme == std::string::npos) return false;  // "null": a page that hides where it is from
-  const std::string kind = origin.substr(0, scheme);
-  if (kind != "http" && kind != "https") return true;
-  std::string host = origin.substr(scheme + 3);
-  const auto colon = host.rfind(':');
-  if (colon != std::string::npos && host.find(']', colon) == std::string::npos) {
-    host.resize(colon);
-  }
-  static constexpr const char* kHosts[] = {"localhost", "127.0.0.1", "[::1]"};
-  if (std::ranges::find(kHosts, host) != std::end(kHosts)) return true;
-  return kind == "https" && (host == "app.foxglove.dev" || host == "studio.foxglove.dev");
 }
 
 }  // namespace goshawk::viewer_bridge

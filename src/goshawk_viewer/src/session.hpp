@@ -50,9 +50,4 @@ class Session {
   bool closed_ = false;
 };
 
-/// Whether a page of that origin may connect: none (a program), one of this machine, an
-/// application's own scheme, Foxglove's own site, or one that the user named ("any" names all).
-/// A page from elsewhere that a user happens to visit must not fly his vehicle.
-bool origin_allowed(const std::string& origin, const std::string& extra);
-
 }  // namespace goshawk::viewer_bridge

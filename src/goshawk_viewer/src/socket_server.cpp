@@ -137,7 +137,7 @@ int SocketServer::port() const {
 }
 
 void SocketServer::send(std::uint64_t client, bool text, const std::string& payload) {
-  // Where it cannot be sent to any more, its end is on the way.
+  // If it cannot be sent to any more, on_close() follows.
   if (const auto c = impl_->connection(client)) {
     c->send(payload, text ? websocketpp::frame::opcode::text : websocketpp::frame::opcode::binary);
   }

@@ -28,7 +28,7 @@ class SocketServer {
     std::size_t largest_message = 0;  // [byte] from a client; it is closed beyond
   };
 
-  /// @param why set where the address is wrong (wrong_address) or the port cannot be had
+  /// @param why set if the address is wrong (wrong_address) or the port cannot be used
   /// @return nullptr then
   static std::unique_ptr<SocketServer> start(const Options& options, Callbacks callbacks,
                                              std::string& why, bool& wrong_address);

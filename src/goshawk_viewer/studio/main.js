@@ -1,7 +1,7 @@
-// Foxglove Studio (npm: @foxglove/studio-base, MPL-2.0) with our layout and our pictures, offline.
+// Foxglove Studio (npm: @foxglove/studio-base, MPL-2.0) with our layout and drawings, offline.
 'use strict';
 
-// Nothing is kept over a reload, nothing is told to anybody.
+// No setting outlives a reload, and nothing is reported to anyone.
 function settings() {
   const values = new Map(Object.entries({
     colorScheme: 'dark', 'ui.open-dialog-startup': false, hideSignInPrompt: true,
@@ -17,8 +17,8 @@ function settings() {
   };
 }
 
-// In this page the stages' own messages are drawn (goshawk_messages.js), no second time as markers;
-// of a recording plots show all, live the last seconds.
+// The stages' own messages are drawn (goshawk_messages.js), so markers are hidden. Plots show all of a
+// recording, and the last seconds of a live flight.
 function fitted(layout, {recording, places}) {
   const topics = layout.configById['3D!goshawk'].topics;
   for (const name of Object.keys(topics)) if (name.startsWith('/view/')) topics[name].visible = false;
@@ -58,7 +58,7 @@ function extensions(source) {
            installExtension: no, uninstallExtension: no}];
 }
 
-// The studio takes from the address what it shows. The page's own host reaches the recording too.
+// The studio takes its data source from the address.
 function show({bridge, recording}) {
   const address = new URL(location.href);
   const wanted = {layoutId: 'goshawk', ds: bridge ? 'foxglove-websocket' : 'remote-file',
@@ -67,7 +67,7 @@ function show({bridge, recording}) {
     if (!address.searchParams.has(name)) address.searchParams.set(name, value);
   }
   history.replaceState(null, '', address);
-  // No side bar and no hints at first: the picture is what one came for.
+  // No side bar and no hints at first.
   const first = {
     'fox.workspace': {state: {sidebarItem: null, leftSidebarOpen: false}, version: 0},
     'studio.profile-data': {onboarding: {settingsTooltipShownForPanelTypes: ['3D']}}};

@@ -1,11 +1,11 @@
-// What stages say, as scenes that Foxglove's 3D panel draws: no visualizer and no markers needed.
+// Stages' messages as scenes for Foxglove's 3D panel, without visualizer and markers.
 // scripts/bundle.py puts theme.js, geometry.js, octomap.js and sight.js before it, main.js the places
-// that the picture is about, kPlaces: [[x, y, z], ...]. Frame map, [m].
+// to look at, kPlaces: [[x, y, z], ...]. Frame map, [m].
 'use strict';
 
 const kZero = {sec: 0, nsec: 0};
 const kStill = {position: {x: 0, y: 0, z: 0}, orientation: {x: 0, y: 0, z: 0, w: 1}};
-const kMostFaces = 400000;  // that a map is drawn with
+const kMostFaces = 400000;  // of a map
 const kGap_s = 0.5;         // a flown track with a longer gap is not joined across it
 
 const xyz = p => [p.x, p.y, p.z];
@@ -53,7 +53,7 @@ function mapTriangles(voxels, low, high, opacity) {
   return triangles(points, indices, rgba(high, opacity), colors);
 }
 
-// The same map comes again with every jump in time: it is made into triangles once.
+// The same map comes again with every jump in time: its triangles are kept.
 function remembered(make) {
   let last = null, made = null;
   const same = (a, b) => a.length === b.length && a.every((x, i) => x === b[i]);
@@ -139,7 +139,7 @@ function vehicleParts(pose, radius = 0.15) {
     cubes: [part([0, 0, 0], [0.7 * radius, 0.4 * radius, 0.25 * radius], hex(kTheme.body))]};
 }
 
-// The track as far as it is known here; what is played again is taken off first.
+// The track so far; what is played again is removed first.
 const track = [];
 function flown(m) {
   const t = seconds(m.header.stamp), last = () => track[track.length - 1];
@@ -160,7 +160,15 @@ module.exports.activate = context => {
   const draws = {'octomap_msgs/msg/Octomap': obstacles, 'goshawk_msgs/msg/VoxelGrid': grown,
                  'goshawk_msgs/msg/Path': path, 'goshawk_msgs/msg/CommittedTrajectory': committed,
                  'nav_msgs/msg/Odometry': flown};
-  for (const [fromSchemaName, converter] of Object.entries(draws)) {
+  // How many of each kind were drawn, for tests.
+  const drawn = globalThis.goshawkDrawn = {};
+  for (const [fromSchemaName, draw] of Object.entries(draws)) {
+    drawn[fromSchemaName] = 0;
+    const converter = message => {
+      const picture = draw(message);
+      drawn[fromSchemaName] += 1;
+      return picture;
+    };
     context.registerMessageConverter({fromSchemaName, toSchemaName: 'foxglove.SceneUpdate', converter});
   }
 };

@@ -41,6 +41,7 @@ class PageServer(unittest.TestCase):
         cls.folder.cleanup()
 
     def ask(self, path, method="GET", **headers):
+        """Asks for 127.0.0.1 unless the headers name another Host."""
         link = http.client.HTTPConnection("127.0.0.1", self.server.server_port, timeout=60)
         link.request(method, path, headers={k.replace("_", "-"): v for k, v in headers.items()})
         answer = link.getresponse()
@@ -105,19 +106,41 @@ class PageServer(unittest.TestCase):
             with self.subTest(path=path):
                 with socket.create_connection(("127.0.0.1", self.server.server_port)) as link:
                     link.settimeout(60)
-                    link.sendall(f"GET {path} HTTP/1.0\r\n\r\n".encode())
+                    link.sendall(f"GET {path} HTTP/1.0\r\nHost: localhost\r\n\r\n".encode())
                     answer = b""
                     while chunk := link.recv(65536):
                         answer += chunk
                 self.assertIn(answer.split()[1], (b"400", b"404"), answer[:80])
                 self.assertNotIn(b"secret", answer)
 
+    def test_every_name_of_this_machine_is_served(self):
+        for host in ("127.0.0.1", "127.0.0.1:8080", "localhost:9000", "LOCALHOST", "[::1]:80"):
+            with self.subTest(host=host):
+                self.assertEqual(self.ask("/", Host=host)[0].status, 200)
+
+    def test_a_page_that_was_made_to_lead_here_reads_nothing(self):
+        for host in ("evil.example", "evil.example:8080", "localhost.evil.example", "127.0.0.1.evil.example",
+                     "evil.example:127.0.0.1", "localhost:x", "[::1", "10.0.0.7", ""):
+            with self.subTest(host=host):
+                for path in ("/", "/flight.mcap", "/nothing"):
+                    answer, body = self.ask(path, Host=host)
+                    self.assertEqual(answer.status, 421)
+                    self.assertIn(b"http://127.0.0.1", body)
+
+    def test_a_request_without_a_host_or_with_two_is_refused(self):
+        for hosts in (b"", b"Host: localhost\r\nHost: evil.example\r\n"):
+            with self.subTest(hosts=hosts):
+                with socket.create_connection(("127.0.0.1", self.server.server_port)) as link:
+                    link.settimeout(60)
+                    link.sendall(b"GET / HTTP/1.0\r\n" + hosts + b"\r\n")
+                    self.assertEqual(link.recv(65536).split()[1], b"421")
+
     def test_other_methods_are_refused(self):
         self.assertEqual(self.ask("/", "POST")[0].status, 501)
 
     def test_a_client_that_leaves_in_the_middle_harms_nobody(self):
         with socket.create_connection(("127.0.0.1", self.server.server_port)) as link:
-            link.sendall(b"GET /flight.mcap HTTP/1.1\r\nHost: x\r\n\r\n")
+            link.sendall(b"GET /flight.mcap HTTP/1.1\r\nHost: localhost\r\n\r\n")
             link.recv(100)
         self.assertEqual(self.ask("/")[1], b"<p>page</p>")
 

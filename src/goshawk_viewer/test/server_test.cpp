@@ -1,5 +1,6 @@
 #include "goshawk/viewer_bridge/server.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -152,12 +153,12 @@ TEST_F(BridgeServer, RefusesStrangersWithASentence) {
   EXPECT_THAT(other.shake_hands(""), HasSubstr("speaks foxglove.websocket.v1"));
   RawClient page(server_->port());
   EXPECT_THAT(page.shake_hands("foxglove.websocket.v1", "https://example.org"),
-              HasSubstr("https://example.org may not connect"));
+              HasSubstr("https://example.org may not connect; -p origins:=https://example.org"));
   RawClient first(server_->port());
   EXPECT_THAT(first.shake_hands(), StartsWith("HTTP/1.1 101"));
   ASSERT_TRUE(comes_true([&] { return server_->clients() == 1; }));
   RawClient second(server_->port());
-  EXPECT_THAT(second.shake_hands(), HasSubstr("there are 1 clients already"));
+  EXPECT_THAT(second.shake_hands(), HasSubstr("the limit of 1 clients is reached"));
 }
 
 TEST_F(BridgeServer, SaysWhyItCannotListen) {
@@ -167,10 +168,13 @@ TEST_F(BridgeServer, SaysWhyItCannotListen) {
   const auto busy = Server::start(options);
   ASSERT_FALSE(busy);
   EXPECT_EQ(busy.code(), ErrorCode::io_failed);
-  EXPECT_THAT(busy.error().message, HasSubstr("port " + std::to_string(server_->port())));
+  EXPECT_THAT(busy.error().message, HasSubstr(fmt::format("port {}", server_->port())));
   options.port = 70000;
   EXPECT_EQ(Server::start(options).code(), ErrorCode::invalid_parameter);
   options.port = 0;
+  options.origins = "localhost";
+  EXPECT_EQ(Server::start(options).code(), ErrorCode::invalid_parameter);
+  options.origins = "";
   options.address = "not an address";
   EXPECT_EQ(Server::start(options).code(), ErrorCode::invalid_parameter);
   options.address = "203.0.113.1";  // of no interface here

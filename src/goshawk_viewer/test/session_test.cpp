@@ -76,19 +76,5 @@ TEST(Session, CountsMessagesOfASecond) {
   EXPECT_TRUE(session.within_rate(10, now + std::chrono::milliseconds(1100)));
 }
 
-TEST(Origin, LetsInWhatIsLocalAndFoxglove) {
-  for (const char* origin :
-       {"", "http://localhost:8080", "http://127.0.0.1", "https://127.0.0.1:443", "http://[::1]:80",
-        "https://app.foxglove.dev", "file://", "app://lichtblick"}) {
-    EXPECT_TRUE(origin_allowed(origin, "")) << origin;
-  }
-  for (const char* origin : {"https://example.org", "null", "http://localhost.example.org",
-                             "https://127.0.0.1.example.org:80", "http://app.foxglove.dev"}) {
-    EXPECT_FALSE(origin_allowed(origin, "")) << origin;
-    EXPECT_TRUE(origin_allowed(origin, "any")) << origin;
-    EXPECT_TRUE(origin_allowed(origin, std::string("https://a.b,") + origin)) << origin;
-  }
-}
-
 }  // namespace
 }  // namespace goshawk::viewer_bridge

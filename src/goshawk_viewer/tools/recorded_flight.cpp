@@ -5,8 +5,8 @@
 #include "goshawk/conversions/plan.hpp"
 #include "goshawk/conversions/vehicle.hpp"
 #include "goshawk/core/grid_update.hpp"
+#include "goshawk/map_server/voxel_map.hpp"
 #include "goshawk/runtime/message_type.hpp"
-#include "goshawk/viewer_bridge/octomap_voxels.hpp"
 #include "octomap_msgs.h"
 
 namespace goshawk::viewer {
@@ -15,13 +15,14 @@ namespace {
 namespace msg = goshawk_msgs::msg;
 
 constexpr std::size_t kMostComplaints = 20;
+constexpr std::int64_t kMostVoxels = 300'000'000;  // that a page can draw
 
-/// @return invalid_input where the bytes are no such message
+/// @return invalid_input if the bytes do not decode
 template <typename Message>
 Result<Message> decoded(const std::vector<unsigned char>& bytes) {
   Message message;
   if (!runtime::decode(bytes, message)) {
-    return fail(ErrorCode::invalid_input, "its bytes are no such message");
+    return fail(ErrorCode::invalid_input, "the bytes do not decode as this message");
   }
   return message;
 }
@@ -85,7 +86,7 @@ Result<RecordedFlight> RecordedFlight::read(recording::Reader& reader) {
   if (!status) return status.error();
   if (flight.is_empty()) {
     return fail(ErrorCode::invalid_input,
-                "there is nothing in it that this page draws (odom, committed_trajectory, "
+                "it holds nothing that this page can draw (odom, committed_trajectory, "
                 "octomap_binary, map/voxels): goshawk view --foxglove shows any topic");
   }
   for (const auto& sentence : reader.complaints()) flight.complaints_.push_back(sentence);
@@ -99,7 +100,7 @@ Status RecordedFlight::take_odometry(const Bytes& bytes) {
   if (!state) return state.error();
   const std::int64_t stamp_ns = conversions::to_ns(m->header().stamp());
   if (!flown_.empty() && stamp_ns < flown_.back().stamp_ns) {
-    return fail(ErrorCode::invalid_input, "time goes backwards; what comes again is left out");
+    return fail(ErrorCode::invalid_input, "time goes backwards: the repeated part is left out");
   }
   flown_.push_back({stamp_ns, {0.0, state->position_map, state->velocity_map, state->q_map_base}});
   return success();
@@ -128,10 +129,14 @@ Status RecordedFlight::take_path(const Bytes& bytes) {
 Status RecordedFlight::take_octomap(const Bytes& bytes) {
   const auto m = decoded<octomap_msgs::msg::Octomap>(bytes);
   if (!m) return m.error();
-  auto grid = viewer_bridge::octomap_voxels(
-      {reinterpret_cast<const std::uint8_t*>(m->data().data()), m->data().size()}, m->resolution());
-  if (!grid) return grid.error();
-  obstacles_ = *std::move(grid);
+  const std::string_view payload(reinterpret_cast<const char*>(m->data().data()), m->data().size());
+  const auto tree = map_server::read_binary_payload(payload, m->resolution());
+  if (!tree) return tree.error();
+  auto voxels = map_server::voxelize(**tree, {.box = {}, .max_voxels = kMostVoxels});
+  if (!voxels) return voxels.error();
+  obstacles_.emplace();
+  obstacles_->geometry = voxels->geometry;
+  obstacles_->grown = std::move(voxels->occupied);
   return success();
 }
 
@@ -149,7 +154,7 @@ Status RecordedFlight::take_update(const Bytes& bytes) {
   if (!m) return m.error();
   const auto update = conversions::from_msg(*m);
   if (!update) return update.error();
-  // One that does not follow is left out, as stages do: the whole map comes again soon after.
+  // An update that does not follow is dropped, as stages do: the whole map comes soon after.
   if (grown_ && grown_->version == update->from_version) return apply(*grown_, *update);
   return success();
 }

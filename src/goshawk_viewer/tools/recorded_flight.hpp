@@ -14,13 +14,13 @@ namespace goshawk::viewer {
 /// the track. Of several vehicles, the one whose topic's name comes first.
 class RecordedFlight {
  public:
-  /// @return io_failed where the file cannot be read; invalid_input where it holds nothing to draw
+  /// @return io_failed if the file cannot be read; invalid_input if it holds nothing to draw
   static Result<RecordedFlight> read(recording::Reader& reader);
 
   /// @return refers to the maps of this object
   flight_report::Flight flight(const std::string& title) const;
 
-  /// What could not be used, a sentence each.
+  /// What could not be used, one sentence each.
   const std::vector<std::string>& complaints() const { return complaints_; }
 
  private:

@@ -1,5 +1,6 @@
 // recording_page RECORDING.mcap TEMPLATE.html OUTPUT.html: a recording as the page of a flight.
-// For goshawk view. Failures are one line on stderr, "code: sentence"; so is what is missing.
+// For goshawk view. A failure is one line on stderr, "code: sentence"; so is each part that is
+// missing.
 
 #include <cstdio>
 #include <filesystem>

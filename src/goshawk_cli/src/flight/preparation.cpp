@@ -69,10 +69,12 @@ Result<std::string> make_flight_folder(const FlyOptions& o, const Preparation& p
   std::error_code error;
   std::filesystem::create_directories(folder + "/logs", error);
   if (error) {
-    return fail(ErrorCode::io_failed, fmt::format("the flight folder {} cannot be made: {}", folder,
-                                                  error.message()));
+    return fail(ErrorCode::io_failed,
+                fmt::format("the flight folder {} cannot be made: {}", folder, error.message()));
   }
-  if (auto saved = map_server::save_octree(*p.map.tree, folder + "/world.bt"); !saved) {
+  if (auto saved = map_server::save_voxels(p.map.raw.geometry, p.map.raw.occupied, p.map.raw.known,
+                                           folder + "/world.bt");
+      !saved) {
     return saved.error();
   }
   return std::filesystem::canonical(folder).string();

@@ -111,9 +111,9 @@ Json plan_to_json(const Plan& plan) {
   object["request"] = request_json(plan);
   object["path"] = plan.path ? path_json(*plan.path) : Json(nullptr);
   object["corridor"] = plan.corridor ? corridor_json(*plan.corridor) : Json(nullptr);
-  object["trajectory"] = plan.solution ? trajectory_json(plan.solution->trajectory) : Json(nullptr);
+  object["trajectory"] = plan.solution ? trajectory_json(plan.solution->trajectory()) : Json(nullptr);
   object["certificate"] =
-      plan.solution ? certificate_to_json(plan.solution->certificate) : Json(nullptr);
+      plan.solution ? certificate_to_json(plan.solution->certified.certificate()) : Json(nullptr);
   return object;
 }
 

@@ -104,10 +104,8 @@ Status Planner::run(Plan& plan) {
                             [&] { return builder_.build(*grid_, plan.path->waypoints_map); });
   if (!corridor) return corridor.error();
   plan.corridor = *std::move(corridor);
-  auto solution = run_stage(
-      plan, "trajectory_optimizer", std::string(optimizer_.implementation()), [&] {
-        return optimizer_.optimise(*plan.corridor, request.start, request.goal, request.limits);
-      });
+  auto solution = run_stage(plan, "trajectory_optimizer", std::string(optimizer_.implementation()),
+                            [&] { return optimizer_.optimise(request, *plan.corridor); });
   if (!solution) return solution.error();
   plan.solution = *std::move(solution);
   return success();

@@ -99,7 +99,9 @@ Result<std::vector<std::string>> launch_arguments(const BenchOptions& o,
     const auto map = load_map(*config);
     if (!map) return map.error();
     args.overrides.push_back({"map_server", "map_file", folder + "/world.bt"});
-    if (auto saved = map_server::save_octree(*map->tree, args.overrides.back().value); !saved) {
+    if (auto saved = map_server::save_voxels(map->raw.geometry, map->raw.occupied, map->raw.known,
+                                             args.overrides.back().value);
+        !saved) {
       return saved.error();
     }
   }

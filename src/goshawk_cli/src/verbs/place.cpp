@@ -89,7 +89,10 @@ Result<Placed> place(const PlaceOptions& o) {
   const auto map = load_map(config);
   if (!map) return map.error();
   if (made) {
-    if (auto saved = map_server::save_octree(*map->tree, o.world); !saved) return saved.error();
+    if (auto saved =
+            map_server::save_voxels(map->raw.geometry, map->raw.occupied, map->raw.known, o.world);
+        !saved)
+      return saved.error();
     config.map.map_file = o.world;
   }
   placed.parameters[o.map_server + ":map_file"] = config.map.map_file;

@@ -38,7 +38,7 @@ void print(const Plan& plan) {
                plan.corridor->polytopes.size(), plan.corridor->min_overlap_radius_m());
   }
   if (plan.solution) {
-    const auto& t = plan.solution->trajectory;
+    const auto& t = plan.solution->trajectory();
     const auto peaks = t.peaks();
     fmt::print(
         "trajectory  {:.3f} s, {:.3f} m, mean {:.3f} m/s, top {:.3f} m/s and {:.3f} m/s^2, {} "
@@ -61,7 +61,7 @@ Status save(const Plan& plan, const LoadedMap& map, const std::string& folder) {
   leg.raw_path_map = plan.path->raw_map;
   leg.waypoints_map = plan.path->waypoints_map;
   leg.corridor = plan.corridor->polytopes;
-  leg.trajectory = plan.solution->trajectory;
+  leg.trajectory = plan.solution->trajectory();
   flight.legs.push_back(std::move(leg));
   if (auto drawn = flight_report::write_flight_folder(flight, folder); !drawn) return drawn;
   return flight_report::write_flight_page(flight, page_template(), folder + "/flight.html");

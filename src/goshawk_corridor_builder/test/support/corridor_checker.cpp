@@ -125,7 +125,7 @@ double volume_of(const Polytope& polytope) {
       const Vec3 p(0.0, lower.y() + (j + 0.5) * dy, lower.z() + (k + 0.5) * dz);
       double from = lower.x(), to = upper.x();
       for (int i = 0; i < polytope.faces(); ++i) {
-        const double n = polytope.A(i, 0);
+        const double n = polytope.A()(i, 0);
         const double rest = polytope.b()[i] - polytope.A().row(i).dot(p);
         if (n > 1e-12) to = std::min(to, rest / n);
         if (n < -1e-12) from = std::max(from, rest / n);

@@ -33,12 +33,16 @@ enum class ErrorCode {
   solver_failed,          // the solver stopped without an answer: numerical trouble
   not_certified,          // the certificate does not hold
   deadline_exceeded,
-  not_at_start,   // the vehicle is not where the trajectory begins
-  tracking_lost,  // odometry is missing, stale or too far from the trajectory
-  stage_silent,   // a stage did not answer in time
-  io_failed,      // a file or a socket could not be used
-  collision,      // the vehicle's body touches an obstacle, as planned or as flown
-  cancelled,      // whoever asked wants no answer any more
+  not_at_start,        // the vehicle is not where the trajectory begins
+  tracking_lost,       // odometry is missing, stale or too far from the trajectory
+  stage_silent,        // a stage did not answer in time
+  io_failed,           // a file or a socket could not be used
+  collision,           // the vehicle's body touches an obstacle, as planned or as flown
+  cancelled,           // the asker wants no answer any more
+  trajectory_blocked,  // the map shows an obstacle on a committed trajectory
+  process_stalled,     // this process did not run for a while: stopped, suspended, or starved
+  clock_set,           // a clock that stamps come from was set forward or back
+  second_writer,       // a second program writes what one alone may write
 };
 
 std::string_view to_string(ErrorCode code);

@@ -13,7 +13,7 @@ struct Body {
   double length_m = 0.3;  // [m] of the box along x
   double width_m = 0.3;   // [m] of the box along y
 
-  /// @return invalid_parameter, naming every edge in use that is not within (0, 100] m
+  /// @return invalid_parameter, naming every edge in use that lies outside of (0, 100] m
   Status check() const;
 
   /// @return [m] how far the body's farthest point is from base_link: turning by an angle moves

@@ -27,10 +27,10 @@ void describe(Self& c, Visitor&& visit) {
         Range::positive(100.0));
   visit("width_m", c.body.width_m, "m", "width of the body's box along y", Range::positive(100.0));
   visit("count_unknown_as_obstacle", c.options.count_unknown_as_obstacle, "",
-        "voxels never measured, and all that lies outside of the map, are obstacles", Anything{});
+        "unknown voxels, and everything outside of the map, are obstacles", Anything{});
   visit("tolerance_m", c.options.tolerance_m, "m",
         "the smallest clearance is found to within this distance", Range{1e-5, 1.0});
-  visit("period_s", c.period_s, "s", "how often the flight since the last time is judged",
+  visit("period_s", c.period_s, "s", "how often the latest part of the flight is judged",
         Range{0.01, 10.0});
 }
 

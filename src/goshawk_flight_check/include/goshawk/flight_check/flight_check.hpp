@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -30,20 +31,20 @@ struct Sample {
 /// What lies in a long gap between samples of a flown track is not known, so it cannot be judged.
 inline constexpr double kLongestGap_s = 0.5;
 
-/// @return tracking_lost with the longest gap where it is above kLongestGap_s
+/// @return tracking_lost, naming the longest gap, if it is above kLongestGap_s
 Status check_gaps(std::span<const Sample> track);
 
 struct Verdict {
   bool touched = false;
   /// [m] smallest distance between body and obstacles, at most Options::tolerance_m above the
-  /// true one; 0 where touched, infinity where the map has no obstacle
+  /// true one; 0 if touched, infinity if the map has no obstacle
   double clearance_m = 0.0;
-  double clearance_t_s = 0.0;  // [s] when; the first contact where touched
-  /// [m] where: the nearest point of an obstacle; the contact where touched; the vehicle's own
-  /// position where the map has no obstacle
+  double clearance_t_s = 0.0;  // [s] when; the first contact if touched
+  /// [m] where: the nearest point of an obstacle; the contact if touched; the vehicle's own
+  /// position if the map has no obstacle
   Vec3 clearance_place_map = Vec3::Zero();
   std::int64_t samples = 0;  // how many samples were judged
-  std::int64_t queries = 0;  // how many poses were measured, samples included
+  std::int64_t queries = 0;  // how many poses were measured
   std::string sentence{};    // the verdict for people
 };
 
@@ -56,10 +57,11 @@ struct Options {
 /// FCL (Pan, Chitta, Manocha: FCL, a general purpose library for collision and proximity queries,
 /// ICRA 2012). It uses nothing of the planner: no inflated grid, no corridor, no line of sight.
 ///
-/// Between samples it leaves no gap: a body whose points all move by at most L between two poses
-/// with clearances c0 and c1 stays (c0 + c1 - L) / 2 away from everything in between; spans where
-/// that bound is not good enough are halved until it is (conservative advancement from both ends;
-/// Mirtich, 1996). L is the distance flown plus the angle turned times Body::reach_m().
+/// It leaves no gap: a body whose points all move by at most L between two poses with clearances c0
+/// and c1 stays (c0 + c1 - L) / 2 away from everything in between. A part of the flight for which
+/// that bound is not good enough is halved until it is, so that far from obstacles most samples
+/// need no measurement (conservative advancement from both ends; Mirtich, 1996). L is the distance
+/// flown plus the angle turned times Body::reach_m().
 class FlightCheck {
  public:
   /// @param map_file an OctoMap file, .bt or .ot
@@ -78,9 +80,12 @@ class FlightCheck {
                                           const Body& body = {}, const Options& options = {});
 
   /// @param track in the order of time; one sample is a vehicle that does not move
+  /// @param below_m [m] clearances that are not below this need not be found: the verdict's
+  /// clearance may then be too large, but a contact is always found
   /// @return invalid_input for no sample, a number that is not finite, a position beyond 1e6 m,
   /// a quaternion without unit length, or time that goes backwards; names the sample
-  Result<Verdict> judge(std::span<const Sample> track) const;
+  Result<Verdict> judge(std::span<const Sample> track,
+                        double below_m = std::numeric_limits<double>::infinity()) const;
 
   FlightCheck(FlightCheck&&) noexcept;
   FlightCheck& operator=(FlightCheck&&) noexcept;

@@ -18,8 +18,8 @@ struct FlownSample {
   Quaternion q_map_base = Quaternion::Identity();  // base_link to map
 };
 
-/// From one goal to the next. What is missing stays empty and is not drawn: a leg may have a path
-/// and no trajectory.
+/// From one goal to the next. Missing parts stay empty and are not drawn: a leg may have a path and
+/// no trajectory.
 struct Leg {
   std::vector<Vec3> raw_path_map;   // [m] voxel centres as searched
   std::vector<Vec3> waypoints_map;  // [m] the pruned polyline
@@ -53,7 +53,7 @@ struct Flight {
   Status check() const;
 
   /// Where the vehicle should be at t_s: on the leg that began last, at that leg's end once its
-  /// time is over. Nothing before the first leg, or where no leg has a trajectory.
+  /// time is over. Nothing before the first leg, or if no leg has a trajectory.
   std::optional<FlatState> planned_at(double t_s) const;
 };
 

@@ -13,8 +13,8 @@ namespace goshawk::flight_report {
 /// @param page_template the page that goshawk_viewer installs, with "@FLIGHT@" where the flight
 /// goes
 /// @param summary_json what came of the flight (docs/cli.md), or "null"
-/// @return invalid_input where Flight::check() fails; io_failed where the template cannot be read
-/// or is none, or the file cannot be written
+/// @return invalid_input if Flight::check() fails or the summary is not JSON; io_failed if the
+/// template cannot be read or is not one, or the file cannot be written
 Status write_flight_page(const Flight& flight, const std::filesystem::path& page_template,
                          const std::filesystem::path& file,
                          const std::string& summary_json = "null");

@@ -10,10 +10,10 @@ namespace goshawk::introspection {
 
 /// A message in XCDR1 as it is on the wire (4 bytes of encapsulation in front, either byte order)
 /// as JSON: structs are objects in the order of their fields, sequences and arrays are arrays.
-/// Numbers keep every bit; what JSON has no number for are the strings "nan", "inf" and "-inf".
+/// Numbers keep every bit; values that JSON cannot write are the strings "nan", "inf" and "-inf".
 ///
-/// The bytes may come from anyone: a length that they cannot hold, a bool that is neither 0 nor 1
-/// and a wrong encapsulation are errors, found before memory is claimed for them.
+/// The bytes are not trusted: a length that they cannot hold, a bool that is neither 0 nor 1 and a
+/// wrong encapsulation are errors, found before any memory is allocated for them.
 /// @return invalid_input that names field and fault
 Result<nlohmann::ordered_json> cdr_to_json(const Type& type, std::span<const unsigned char> bytes);
 

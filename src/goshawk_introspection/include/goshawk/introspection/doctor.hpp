@@ -15,18 +15,18 @@ enum class Level {
   fault,    // does not work
 };
 
-/// One thing that was looked at; unless it is fine, why it matters and what mends it.
+/// One thing that was checked; unless it is fine, also why it matters and what mends it.
 struct Finding {
   std::string about;  // "loopback", "topic /path"
   Level level = Level::fine;
-  std::string message;    // what is
-  std::string why = "";   // it matters
+  std::string message;    // the state
+  std::string why = "";   // why it matters
   std::string mend = "";  // what to do
 };
 
 std::string to_string(Level level);
 
-/// Looks at the machine, the settings and the domain.
+/// Checks the machine, the settings and the domain.
 /// @param timeout_s longest wait for others in the domain
 std::vector<Finding> examine(double timeout_s);
 
@@ -36,8 +36,7 @@ std::vector<Finding> check_machine();
 /// The environment: domain, interfaces, profile file.
 std::vector<Finding> check_environment();
 
-/// Goshawk's version, those of what it stands on, as compiled and as loaded, and the viewer's
-/// browser.
+/// Versions of Goshawk and of its libraries, as compiled and as loaded, and the viewer's browser.
 std::vector<Finding> check_versions();
 
 /// @param compiled "2.9.1", empty: not known @param loaded the file that the loader took, such as
@@ -45,8 +44,8 @@ std::vector<Finding> check_versions();
 Finding compare_versions(const std::string& name, const std::string& compiled,
                          const std::string& loaded);
 
-/// Whether those who write and read a topic can hear each other, whether names are unique and
-/// versions the same. Pure: of what was discovered.
+/// Whether writers and readers of each topic match, names are unique, and versions the same. A pure
+/// function of what was discovered.
 std::vector<Finding> check_topics(const std::vector<runtime::ParticipantInfo>& participants,
                                   const std::vector<runtime::EndpointInfo>& endpoints);
 
@@ -57,29 +56,29 @@ std::vector<int> domains_in_use(const std::string& udp_table);
 /// Sockets in use: port to inode, of /proc/net/udp, or of /proc/net/tcp where it listens.
 std::map<int, long> ports_in_use(const std::string& table);
 
-/// UDP ports of the domain that a program holds which is no participant: one that has a user's
-/// port, but not the port of discovery that belongs to it.
+/// UDP ports of the domain that are held by a program that is not a participant: it has a user's
+/// port without the discovery port that belongs to it.
 std::vector<int> stolen_ports(const std::map<int, long>& udp_ports, int domain);
 
-/// What stands in the way of this domain's ports, and of the viewer's.
+/// Obstacles to this domain's ports and the viewer's.
 /// @param bridge_runs a viewer_bridge is in the domain: its port is rightly taken
 std::vector<Finding> check_ports(int domain, bool bridge_runs);
 
 /// @param first, last of the ports that the system hands out to programs that ask for any
 Finding check_port_range(int domain, int first, int last);
 
-/// How the machine's clock stands, and whether it was set between two looks at it.
+/// The state of the machine's clock, and whether it was set between two readings.
 class ClockWatch {
  public:
   ClockWatch();
-  /// @return what holds now, seen from construction on
+  /// @return findings since construction
   std::vector<Finding> findings() const;
 
  private:
   double offset_s_;
 };
 
-/// @param jump_s [s] by how much the clock was set while it was watched
+/// @param jump_s [s] change of the clock while it was watched
 Finding check_clock_jump(double jump_s);
 
 /// @param ages_s [s] of a topic's messages when they came; at least one

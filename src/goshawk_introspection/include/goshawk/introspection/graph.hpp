@@ -11,10 +11,10 @@ namespace goshawk::introspection {
 
 struct NodeInfo {
   std::string name;     // full
-  std::string process;  // as its participant calls itself
+  std::string process;  // name of its participant
 };
 
-/// The nodes of the domain, by name, and processes that name none.
+/// The nodes of the domain, by name, and processes without named nodes.
 struct NodeList {
   std::vector<NodeInfo> nodes;
   int unnamed_participants = 0;
@@ -30,7 +30,7 @@ struct TopicSummary {
 /// The topics of the domain, by name.
 std::map<std::string, TopicSummary> list_topics(Session& session, double timeout_s);
 
-/// One who writes or reads a topic.
+/// A writer or reader of a topic.
 struct Endpoint {
   std::vector<std::string> nodes;  // of its process
   runtime::EndpointInfo info;
@@ -43,7 +43,7 @@ struct TopicInfo {
   std::vector<Endpoint> subscribers;
 };
 
-/// @return invalid_parameter or stage_silent if the topic is not there within timeout_s
+/// @return invalid_parameter or stage_silent if the topic does not appear within timeout_s
 Result<TopicInfo> topic_info(Session& session, const std::string& topic, double timeout_s);
 
 }  // namespace goshawk::introspection

@@ -2,8 +2,8 @@
 
 namespace goshawk::introspection {
 
-/// From construction to destruction SIGINT and SIGTERM only set a flag, and a file that grows beyond
-/// its limit is an error instead of a signal; at the end the handlers of before are back.
+/// From construction to destruction SIGINT and SIGTERM only set a flag, and a file that grows
+/// beyond its limit is an error instead of a signal; the destructor restores the previous handlers.
 class Interruptible {
  public:
   Interruptible();

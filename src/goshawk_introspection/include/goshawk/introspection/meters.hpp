@@ -11,7 +11,7 @@
 
 namespace goshawk::introspection {
 
-/// The newest values, and their statistics.
+/// The newest values and their statistics.
 class Window {
  public:
   explicit Window(std::size_t most) : most_(most) {}
@@ -32,7 +32,7 @@ class Window {
   double mean() const { return sum() / double(size()); }
   double min() const { return *std::ranges::min_element(values_); }
   double max() const { return *std::ranges::max_element(values_); }
-  /// Of the population, as `ros2 topic hz` has it.
+  /// Of the population, as in `ros2 topic hz`.
   double deviation() const {
     const double m = mean();
     double squares = 0.0;
@@ -59,7 +59,7 @@ class RateMeter {
   std::optional<std::int64_t> last_ns_;
 };
 
-/// From the header's stamp to the arrival here.
+/// Time from the header's stamp to the arrival.
 class DelayMeter {
  public:
   explicit DelayMeter(std::size_t window) : delays_s(window) {}
@@ -70,7 +70,7 @@ class DelayMeter {
   Window delays_s;
 };
 
-/// Bytes, and when they came.
+/// Sizes and arrival times of messages.
 class BandwidthMeter {
  public:
   explicit BandwidthMeter(std::size_t window) : sizes_byte(window), times_s_(window) {}

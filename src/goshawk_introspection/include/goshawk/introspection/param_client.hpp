@@ -4,8 +4,8 @@
 #include <utility>
 #include <vector>
 
-#include "goshawk/runtime/parameters.hpp"
 #include "goshawk/introspection/session.hpp"
+#include "goshawk/runtime/parameters.hpp"
 
 namespace goshawk::introspection {
 

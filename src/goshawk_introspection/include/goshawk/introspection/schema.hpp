@@ -24,11 +24,11 @@ inline std::span<const Type> all_types() {
 /// @return invalid_input that names the nearest type
 Result<const Type*> find_type(std::string_view name);
 
-/// @return as ROS spells it in .msg files: "float64"; empty for a structure
+/// @return the ROS name, as in .msg files: "float64"; empty for a structure
 std::string_view ros_name(Kind kind);
 
-/// The type as ROS 2 .msg text, each inner type behind a line of '=' and "MSG: package/Name": what
-/// MCAP calls schema encoding "ros2msg".
+/// The type as ROS 2 .msg text, each inner type after a line of '=' and "MSG: package/Name": MCAP's
+/// schema encoding "ros2msg".
 std::string ros_msg_definition(const Type& type);
 /// @return invalid_input that names the nearest type
 Result<std::string> ros_msg_definition(std::string_view type_name);

@@ -12,7 +12,7 @@
 
 namespace goshawk::introspection {
 
-/// A visit to the domain, under a node name that lists leave out. Ctrl-C ends its waits.
+/// A visit to the domain under a node name that lists omit. Ctrl-C ends its waits.
 class Session {
  public:
   static Result<std::unique_ptr<Session>> open();
@@ -22,15 +22,16 @@ class Session {
 
   /// Waits until done() holds. @return whether it did, within timeout_s and without Ctrl-C
   bool wait_for(double timeout_s, const std::function<bool()>& done);
-  /// Waits until somebody is there and nobody new came for a moment.
+  /// Waits until there are participants and none has joined for a moment.
   void settle(double timeout_s);
-  /// The same for anything that is counted.
+  /// The same for any count.
   void settle(double timeout_s, const std::function<int()>& count);
   std::vector<runtime::EndpointInfo> endpoints_of(const std::string& topic) const;
   /// Names of all nodes, those of one process together.
   std::vector<std::string> nodes() const;
 
-  /// For a topic that is not there: invalid_parameter that names the nearest one, or stage_silent.
+  /// For a topic that does not exist: invalid_parameter that names the nearest one, or
+  /// stage_silent.
   Error no_topic(const std::string& topic, double timeout_s) const;
   /// For a topic that nobody reads: the same.
   Error no_reader(const std::string& topic, const std::string& type) const;
@@ -43,7 +44,7 @@ class Session {
   std::unique_ptr<runtime::Node> node_;
 };
 
-/// "path" and "/path" are the same topic here. @return invalid_parameter for what is not a name
+/// "path" and "/path" are the same topic. @return invalid_parameter for an invalid name
 Result<std::string> full_topic_name(const std::string& topic);
 
 /// The same for a topic, or for the beginning of some: "/uav1/*".

@@ -8,12 +8,12 @@
 
 namespace goshawk::introspection {
 
-/// What a user typed behind `topic pub`: JSON, or YAML of which JSON is a part.
+/// A message that a user typed for `topic pub`: JSON, or YAML, of which JSON is a part.
 /// @return invalid_input if it is neither
 Result<nlohmann::ordered_json> parse_json_or_yaml(const std::string& text);
 
 /// A message as `ros2 topic echo` shows it: block style, lists of numbers in one line. The name of
-/// a constant stands behind its value as a comment: `state: 3  # STATE_ARRIVED`.
+/// a constant follows its value as a comment: `state: 3  # STATE_ARRIVED`.
 /// @param json of that type, as cdr_to_json() makes it
 std::string to_yaml(const Type& type, const nlohmann::ordered_json& json);
 

@@ -11,9 +11,9 @@ namespace goshawk::introspection {
 
 struct ReadOptions {
   std::string topic;
-  int count = 0;          // messages until the end; 0: until Ctrl-C
+  int count = 0;           // messages until the end; 0: until Ctrl-C
   double timeout_s = 2.0;  // longest wait for the topic, and for the first message
-  bool patient = false;   // waits for the first message as long as it takes
+  bool patient = false;    // waits for the first message without limit
 };
 
 struct RawMessage {
@@ -21,7 +21,7 @@ struct RawMessage {
   std::int64_t received_ns;
 };
 
-/// Who follows a topic.
+/// Callbacks of read_topic().
 struct TopicListener {
   /// Gets the type's ROS name before the first message. @return a failure to end
   std::function<Status(const std::string& type)> begin = [](const auto&) { return success(); };
@@ -29,13 +29,13 @@ struct TopicListener {
   std::function<bool(const RawMessage&)> message;
   /// About once a second while messages may come.
   std::function<void()> tick = [] {};
-  /// A sentence on what is unusual.
+  /// A sentence about anything unusual.
   std::function<void(const std::string&)> note = [](const auto&) {};
 };
 
-/// Finds the topic, subscribes with what its writers offer, hands over each message.
-/// @return invalid_parameter for a name that is wrong, stage_silent if nothing comes in time, or
-/// fewer messages than were asked for
+/// Finds the topic, subscribes with the quality of service that its writers offer, and hands over
+/// each message. @return invalid_parameter for an invalid name, stage_silent if no message, or
+/// fewer than requested, came in time
 Status read_topic(Session& session, const ReadOptions& options, const TopicListener& listener);
 
 }  // namespace goshawk::introspection

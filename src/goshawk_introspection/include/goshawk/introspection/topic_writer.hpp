@@ -8,10 +8,10 @@
 
 namespace goshawk::introspection {
 
-/// Writes messages on a topic, so that every reader gets them, whatever it asks for.
+/// Writes messages on a topic with a quality of service that suits every reader.
 class TopicWriter {
  public:
-  /// @return invalid_parameter for a name or a type that is wrong
+  /// @return invalid_parameter for an invalid name or type
   static Result<TopicWriter> open(Session& session, const std::string& topic,
                                   const std::string& type);
 
@@ -23,8 +23,8 @@ class TopicWriter {
                                                    const std::string& message);
 
   int readers() const { return publisher_.matched(); }
-  /// Waits until that many read the topic, then until nobody new comes, so that all of them get what
-  /// is published next.
+  /// Waits until the topic has that many readers and no new ones appear, so that all of them get
+  /// the next message.
   /// @return why fewer came: invalid_parameter that names the nearest topic, or stage_silent;
   /// cancelled on Ctrl-C
   Status wait_for_readers(int wanted, double timeout_s);

@@ -4,6 +4,7 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "goshawk/core/grid_geometry.hpp"
 #include "goshawk/core/result.hpp"
@@ -59,5 +60,9 @@ std::string binary_payload(const octomap::OcTree& tree);
 /// The same of bits, without a tree; empty if nothing is known. @return as make_octree()
 Result<std::string> binary_payload(const GridGeometry& geometry, const BitGrid& occupied,
                                    const BitGrid& known);
+
+/// The tree of such a payload. @param resolution_m [m] from 1e-6 to 1e3
+/// @return map_malformed if it is not one whole tree, map_empty if it holds no node
+Result<OcTreePtr> read_binary_payload(std::string_view payload, double resolution_m);
 
 }  // namespace goshawk::map_server

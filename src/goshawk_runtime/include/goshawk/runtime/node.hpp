@@ -77,8 +77,11 @@ class Node {
 
   const std::string& name() const { return name_; }
   std::string full_name() const;
-  /// [ns] of the clock, or of simulated time
+  /// [ns] of the clock, or of simulated time: for stamps
   std::int64_t now_ns() const;
+  /// [ns] of a clock that nobody sets, or of simulated time: for durations. Whatever flies or times
+  /// out counts on this one.
+  std::int64_t monotonic_ns() const;
   spdlog::logger& log() { return *log_; }
 
   /// Also switches to simulated time or lock step if the user asks for it. From here on the node

@@ -16,8 +16,9 @@
 
 namespace goshawk::stage {
 
-/// The component of a simulated plant: command -> odom, vehicle_status, /tf, in real time or as the
-/// clock of nodes in lock step. With sensor noise or delay, `odom_true` has the truth.
+/// The component of a simulated plant: command -> odom, vehicle_status, /tf, in real time (by the
+/// monotonic clock; stamps are the wall clock's) or as the clock of nodes in lock step. With sensor
+/// noise or delay, `odom_true` has the truth.
 ///
 /// @tparam Vehicle flies: simulator::Quadrotor's functions. A parameter of the template, so that
 ///         this package knows no plant
@@ -36,8 +37,8 @@ class PlantComponent : public runtime::Component {
         topics_(node, reporter_, !config_.vehicle.sensor.is_perfect()) {
     node.subscribe<goshawk_msgs::msg::AttitudeSetpoint>(
         "command", runtime::Qos::best_effort(),
-        [this](const goshawk_msgs::msg::AttitudeSetpoint& m, const runtime::MessageInfo& info) {
-          on_command(m, info);
+        [this](const goshawk_msgs::msg::AttitudeSetpoint& m, const runtime::MessageInfo&) {
+          on_command(m);
         });
     const double period_s = 1.0 / config_.plant.rate_hz;
     const auto followers = runtime::split_names(config_.plant.lock_step_nodes);
@@ -45,7 +46,7 @@ class PlantComponent : public runtime::Component {
       node.lead_lock_step(
           {.followers = followers, .step_s = period_s, .speed = config_.plant.speed});
     }
-    last_ns_ = node.now_ns();
+    last_ns_ = node.monotonic_ns();
     node.every(period_s, [this] { step(); });
     node.every(0.05, [this] { publish_slow(); });
     reporter_.ready("hovers at " + to_text(vehicle_.state().position_map));
@@ -70,26 +71,27 @@ class PlantComponent : public runtime::Component {
     return success();
   }
 
-  void on_command(const goshawk_msgs::msg::AttitudeSetpoint& m, const runtime::MessageInfo& info) {
+  void on_command(const goshawk_msgs::msg::AttitudeSetpoint& m) {
     const auto command = conversions::from_msg(m);
     const Status status = command ? vehicle_.command(*command) : command.error();
     if (!status) return reporter_.complain(status.error());
-    command_ns_ = info.received_ns;
+    command_ns_ = node_.monotonic_ns();
   }
 
   void step() {
-    const std::int64_t now_ns = node_.now_ns();
+    const std::int64_t now_ns = node_.monotonic_ns();
     // In a turn that another node leads, the plant has no time before its first step.
     if (last_ns_ == 0) last_ns_ = now_ns - std::llround(1e9 / config_.plant.rate_hz);
-    // After a pause (a stopped machine, a clock that was set) the world goes on, it does not jump.
+    // After a pause (a stopped process, a suspended machine) the world goes on, it does not jump.
     const double dt_s = std::clamp(double(now_ns - last_ns_) * 1e-9, 0.0, 0.1);
     last_ns_ = now_ns;
     if (auto status = vehicle_.advance(dt_s); !status)
       throw std::logic_error(status.error().message);
     const auto measured = vehicle_.measure();
     // The vehicle counts its own time: a measurement is as old here as it is there.
-    topics_.publish_odometry(measured.state, now_ns - (vehicle_.time_ns() - measured.time_ns));
-    topics_.publish_truth(vehicle_.state(), now_ns);
+    const std::int64_t stamp_ns = node_.now_ns();
+    topics_.publish_odometry(measured.state, stamp_ns - (vehicle_.time_ns() - measured.time_ns));
+    topics_.publish_truth(vehicle_.state(), stamp_ns);
   }
 
   void publish_slow() {
@@ -99,7 +101,7 @@ class PlantComponent : public runtime::Component {
       map_.emplace(node_, reporter_, [this](const auto& grid) { vehicle_.set_map(grid); });
     }
     publish_status();
-    topics_.publish_pose(vehicle_.state(), last_ns_);
+    topics_.publish_pose(vehicle_.state(), node_.now_ns());
   }
 
   void publish_status() {
@@ -113,7 +115,7 @@ class PlantComponent : public runtime::Component {
     status.resets(0);  // a simulated position never jumps
     status.battery(-1.0);
     status.command_age(was_commanded ? double(last_ns_ - command_ns_) * 1e-9 : -1.0);
-    topics_.publish_status(status, last_ns_);
+    topics_.publish_status(status, node_.now_ns());
   }
 
   /// Loss of control is reported once each time.

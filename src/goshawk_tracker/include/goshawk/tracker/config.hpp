@@ -27,18 +27,20 @@ struct Config {
   double position_z_1_s2 = 20.0;
   double velocity_xy_1_s = 6.8;
   double velocity_z_1_s = 7.8;
+  double max_position_error_m = 0.2;
   double max_feedback_m_s2 = 6.0;
   double disturbance_bandwidth_rad_s = 6.0;
   double max_disturbance_m_s2 = 4.0;
   double max_yaw_rate_rad_s = 1.0;
   double max_body_rate_rad_s = 10.0;
 
-  double start_tolerance_m = 0.3;
-  double start_velocity_tolerance_m_s = 0.5;
+  double start_tolerance_m = 0.05;
+  double start_velocity_tolerance_m_s = 0.2;
   double error_allowance_m = 0.05;
-  double max_jump_m = 0.5;
+  double max_jump_m = 0.1;
   double odometry_timeout_s = 0.1;
   double brake_acceleration_m_s2 = 2.0;
+  double stop_acceleration_m_s2 = 5.0;
   double navigator_timeout_s = 2.0;
   LandingRule landing = LandingRule::map;
   double land_after_s = 10.0;
@@ -58,8 +60,9 @@ void describe_vehicle(Self& c, Visitor& visit) {
         Range::positive(1e5));
   visit("max_tilt_rad", c.max_tilt_rad, "rad", "steepest tilt that is asked for", Range{0.05, 1.2});
   visit("linear_drag_xy_kg_s", c.linear_drag_xy_kg_s, "kg/s",
-        "known horizontal drag for the speed, compensated beforehand", Range{0.0, 100.0});
-  visit("linear_drag_z_kg_s", c.linear_drag_z_kg_s, "kg/s", "likewise vertical", Range{0.0, 100.0});
+        "known horizontal drag per speed, compensated by feedforward", Range{0.0, 100.0});
+  visit("linear_drag_z_kg_s", c.linear_drag_z_kg_s, "kg/s", "the same, vertical",
+        Range{0.0, 100.0});
   visit("actuation_delay_s", c.actuation_delay_s, "s",
         "feedforward is taken this far ahead: lag of motors and attitude loop, and transport",
         Range{0.0, 0.3});
@@ -75,6 +78,10 @@ void describe_gains(Self& c, Visitor& visit) {
         Range::positive(50.0));
   visit("velocity_z_1_s", c.velocity_z_1_s, "1/s", "acceleration for a climb rate error",
         Range::positive(50.0));
+  visit("max_position_error_m", c.max_position_error_m, "m",
+        "largest position error that is corrected at once; times position over velocity gain, it "
+        "bounds the speed of catching up",
+        Range::positive(100.0));
   visit("max_feedback_m_s2", c.max_feedback_m_s2, "m/s^2",
         "largest acceleration that position and velocity errors may ask for",
         Range::positive(50.0));
@@ -85,8 +92,8 @@ void describe_gains(Self& c, Visitor& visit) {
         "largest unknown acceleration that is cancelled", Range{0.0, 20.0});
   visit("max_yaw_rate_rad_s", c.max_yaw_rate_rad_s, "rad/s", "how fast the vehicle is turned",
         Range::positive(10.0));
-  visit("max_body_rate_rad_s", c.max_body_rate_rad_s, "rad/s",
-        "largest body rate that is asked for beforehand", Range::positive(50.0));
+  visit("max_body_rate_rad_s", c.max_body_rate_rad_s, "rad/s", "body-rate feedforward limit",
+        Range::positive(50.0));
 }
 
 template <typename Self, typename Visitor>
@@ -95,18 +102,24 @@ void describe_safety(Self& c, Visitor& visit) {
         "how far from the vehicle, or from the trajectory flown, a new one may begin",
         Range::positive(10.0));
   visit("start_velocity_tolerance_m_s", c.start_velocity_tolerance_m_s, "m/s",
-        "likewise for its velocity", Range::positive(10.0));
+        "the same for its velocity", Range::positive(10.0));
   visit("error_allowance_m", c.error_allowance_m, "m",
         "tracking error that the safety margin covers (margin_m of map_server); beyond it the "
-        "reference brakes along its path",
+        "vehicle is stopped where it is",
         Range::positive(100.0));
   visit("max_jump_m", c.max_jump_m, "m",
         "odometry that moves this much more than its velocity explains has jumped",
         Range::positive(100.0));
-  visit("odometry_timeout_s", c.odometry_timeout_s, "s", "older odometry is not flown on",
+  visit("odometry_timeout_s", c.odometry_timeout_s, "s",
+        "older odometry is not flown on; after a pause of its own of this length the tracker stops "
+        "the vehicle where it is",
         Range{0.001, 10.0});
   visit("brake_acceleration_m_s2", c.brake_acceleration_m_s2, "m/s^2",
         "deceleration of the reference when it brakes along its path", Range{0.1, 20.0});
+  visit("stop_acceleration_m_s2", c.stop_acceleration_m_s2, "m/s^2",
+        "hardest deceleration of a vehicle that is stopped where it is; at least "
+        "brake_acceleration_m_s2",
+        Range{0.1, 20.0});
   visit("navigator_timeout_s", c.navigator_timeout_s, "s",
         "a navigator that was heard once and then is silent for this long is lost",
         AtRunTime{Range{0.1, 3600.0}});

@@ -14,6 +14,7 @@ class DisturbanceObserver {
   /// @param bandwidth_rad_s >= 0; 0 switches it off @param max_m_s2 >= 0, bound on the answer
   DisturbanceObserver(double bandwidth_rad_s, double max_m_s2);
 
+  /// One velocity that lies moves what was learnt by a few tenths of max_m_s2 at the most.
   /// @param velocity_map [m/s] measured
   /// @param modelled_acceleration_map [m/s^2] what the model expects, over the past dt_s
   /// @param dt_s [s] since the last update; without use when above 0.1: what was learnt is kept
@@ -23,6 +24,8 @@ class DisturbanceObserver {
   const Vec3& disturbance_map() const { return disturbance_map_; }
 
   void reset();
+  /// The next velocity does not follow on the last one: nothing is learnt from their difference.
+  void interrupt() { running_ = false; }
 
  private:
   double bandwidth_rad_s_;

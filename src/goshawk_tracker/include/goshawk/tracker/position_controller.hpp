@@ -34,6 +34,8 @@ class PositionController {
   /// [m/s^2] what the disturbance observer has learnt
   const Vec3& disturbance_map() const { return observer_.disturbance_map(); }
   void reset();
+  /// The next state does not follow on the last one; what was learnt of the wind is kept.
+  void interrupt() { observer_.interrupt(); }
 
  private:
   Vec3 feedback(const Vec3& position_error, const Vec3& velocity_error) const;
@@ -45,6 +47,7 @@ class PositionController {
   double min_force_m_s2_;  // thrust bounds over the mass
   double max_force_m_s2_;
   double max_slope_;  // tangent of the steepest tilt
+  double max_position_error_m_;
   double max_feedback_m_s2_;
   double max_body_rate_rad_s_;
   Vec3 position_gain_1_s2_;

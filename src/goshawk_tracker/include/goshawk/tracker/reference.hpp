@@ -1,19 +1,25 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 
-#include "goshawk/tracker/committed_trajectory.hpp"
+#include "goshawk/core/committed_trajectory.hpp"
 
 namespace goshawk::tracker {
 
-/// Where the vehicle should be at any moment: at a point, or on a trajectory, which may be told to
-/// brake. Braking slows the time along the path down to a stop, so that the reference never leaves
-/// the certified curve. A function of time alone: asking changes nothing.
+/// Where the vehicle should be at any moment: at a point, on a committed trajectory, or on a curve
+/// of the tracker's own that leaves it (a stop, a landing). A trajectory or curve may be told to
+/// brake: that slows the time along it down to a stop, so that the reference never leaves it. A
+/// function of time alone: asking changes nothing.
 class Reference {
  public:
   static Reference hold(const Vec3& position_map);
-  /// @pre admit(committed) ok
-  static Reference follow(CommittedTrajectory committed);
+  /// @param start_ns when it begins, on the tracker's clock
+  static Reference follow(std::shared_ptr<const CommittedTrajectory> committed,
+                          std::int64_t start_ns);
+
+  /// From now_ns on this curve instead of what was to come. @pre ends at rest
+  void leave_by(const BezierPiece& curve, std::int64_t now_ns);
 
   /// Come to rest on the path, from now_ns on, at about the given deceleration. Again while
   /// braking, or on a held point: nothing new.
@@ -23,15 +29,18 @@ class Reference {
   /// end: the end, at rest.
   FlatState at(std::int64_t time_ns) const;
 
-  bool has_trajectory() const { return committed_.has_value(); }
-  bool braking() const { return brake_.has_value(); }
-  /// At rest for good: a held point, the end of the trajectory, or of the braking.
+  bool has_trajectory() const { return committed_ != nullptr; }
+  /// On a committed trajectory, and as it was planned.
+  bool follows() const { return committed_ && !curve_ && !brake_; }
+  /// At rest for good: a held point, or the end of the trajectory, the curve or the braking.
   bool at_rest(std::int64_t time_ns) const;
 
   /// @pre has_trajectory()
   const CommittedTrajectory& committed() const { return *committed_; }
+  std::int64_t start_ns() const { return start_ns_; }
   double duration_s() const { return duration_s_; }
-  /// [s] how far along the trajectory's own time, in [0, duration_s()]; 0 on a held point
+  /// [s] how far along the trajectory's own time, in [0, duration_s()]; 0 on a held point. A curve
+  /// that left it does not change that.
   double progress_s(std::int64_t time_ns) const;
 
  private:
@@ -46,12 +55,20 @@ class Reference {
     double rate;
     double rate_1_s;
   };
+  bool rests_always() const { return !committed_ && !curve_; }
+  std::int64_t path_start_ns() const { return curve_ ? curve_ns_ : start_ns_; }
+  double path_duration_s() const { return curve_ ? curve_->duration_s : duration_s_; }
+  FlatState on_path(double time_s) const;
   PathTime path_time(std::int64_t time_ns) const;
 
   Vec3 hold_map_ = Vec3::Zero();
-  std::optional<CommittedTrajectory> committed_;
+  std::shared_ptr<const CommittedTrajectory> committed_;
+  std::int64_t start_ns_ = 0;
+  double duration_s_ = 0.0;  // of what is flown of it
+  std::optional<BezierPiece> curve_;
+  std::int64_t curve_ns_ = 0;  // when it begins
+  double left_at_s_ = 0.0;     // where it left the trajectory
   std::optional<Brake> brake_;
-  double duration_s_ = 0.0;
 };
 
 }  // namespace goshawk::tracker

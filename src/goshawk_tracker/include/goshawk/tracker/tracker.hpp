@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "goshawk/core/landing.hpp"
-#include "goshawk/tracker/committed_trajectory.hpp"
 #include "goshawk/tracker/position_controller.hpp"
 #include "goshawk/tracker/reference.hpp"
 
@@ -13,9 +12,9 @@ namespace goshawk::tracker {
 
 enum class Mode {
   idle,    // no odometry yet
-  hold,    // at a point: where the first odometry was, or where a trajectory or braking ended
+  hold,    // at a point: where the first odometry was, or where a trajectory or a stop ended
   follow,  // on a trajectory
-  brake,   // slowing down to a stop, along the trajectory's path
+  brake,   // slowing down: along the trajectory's path, or from where the vehicle was lost
   land,    // straight down from where it held, the navigator being lost; and on the ground
 };
 std::string_view to_string(Mode mode);
@@ -36,7 +35,14 @@ struct TrackingStatus {
 };
 
 /// Flies certified trajectories; hovers before and after. Time is an argument everywhere, on one
-/// clock [ns]; the same calls give the same bits; step() allocates nothing.
+/// monotonic clock [ns]; the same calls give the same bits; step() allocates nothing while nothing
+/// is lost.
+///
+/// What is lost is not flown on: a vehicle farther from its reference than the allowance, odometry
+/// that stops or jumps, a process that did not run. The reference then starts again from where the
+/// vehicle is, and comes to rest there (plan_stop); it never chases what went on without it. The
+/// position error that is corrected is bounded (max_position_error_m), so that no fault makes the
+/// vehicle faster than the trajectory, plus what that error is worth.
 ///
 ///     auto tracker = Tracker::create(config);
 ///     auto command = tracker->step(odometry, stamp_ns, now_ns);      // at odometry's rate
@@ -56,7 +62,12 @@ class Tracker {
   /// A refused trajectory changes nothing. Sentences name the trajectory and the reason.
   /// @return all of admit(); not_at_start: no odometry yet, or it does not pass the vehicle, nor
   ///         the present reference, within the start tolerances; deadline_exceeded: it has ended
-  Status accept(CommittedTrajectory committed, std::int64_t now_ns);
+  /// @param start_ns when it begins, on this clock
+  Status accept(CommittedTrajectory committed, std::int64_t start_ns, std::int64_t now_ns);
+  Status accept(CommittedTrajectory committed, std::int64_t now_ns) {
+    const std::int64_t start_ns = committed.start_time_ns();
+    return accept(std::move(committed), start_ns, now_ns);
+  }
 
   /// Stop on the path and hold there; what is queued is dropped. On a held point: nothing new.
   void brake(std::int64_t now_ns);
@@ -64,8 +75,8 @@ class Tracker {
   /// @param stamp_ns [ns] when `state` was true @param now_ns [ns]
   /// @return the command; or invalid_input (not finite, no unit quaternion, older than the last,
   ///         from the future), tracking_lost (older than odometry_timeout_s). A stamp that falls
-  ///         back by more than odometry_timeout_s is a restarted clock: everything is forgotten,
-  ///         and the vehicle holds where it is.
+  ///         back by more than odometry_timeout_s is a simulation that began anew: everything is
+  ///         forgotten, and the vehicle holds where it is.
   Result<AttitudeSetpoint> step(const RigidBodyState& state, std::int64_t stamp_ns,
                                 std::int64_t now_ns);
   Result<AttitudeSetpoint> step(const RigidBodyState& state, std::int64_t now_ns) {
@@ -88,7 +99,8 @@ class Tracker {
   void heard_navigator(std::int64_t now_ns);
 
   /// What must be noticed when nothing comes in. Odometry older than its timeout is lost: the
-  /// reference brakes along its path, and the vehicle, which gets no command, holds by itself. A
+  /// vehicle, which gets no command, brakes by itself, and is stopped from where it is when
+  /// odometry is back. So is one whose tracker was not called for that long (process_stalled). A
   /// silent navigator is lost: what is committed is flown to its end and held there; after
   /// land_after_s at rest the vehicle lands where the map shows the way down free, else it holds
   /// until a map does. Each is a fault with a code. Included in step().
@@ -101,18 +113,26 @@ class Tracker {
   explicit Tracker(const Config& config);
   Status check_odometry(const RigidBodyState& state, std::int64_t stamp_ns,
                         std::int64_t now_ns) const;
-  Status check_start(const CommittedTrajectory& committed, std::int64_t now_ns) const;
+  Status check_start(const Reference& candidate, std::int64_t now_ns) const;
   FlatState reference_at(std::int64_t time_ns) const;
   void hold_here(const RigidBodyState& state);
   void take_in(const RigidBodyState& state, std::int64_t stamp_ns, std::int64_t now_ns);
   void switch_trajectories(std::int64_t now_ns);
+  void notice_stall(std::int64_t now_ns);
+  double jump_m(const RigidBodyState& state, std::int64_t stamp_ns) const;
+  void stop_after_jump(double jump_m, std::int64_t now_ns);
+  Status check_agreement(std::int64_t now_ns) const;
+  void find_again(std::int64_t last_stamp_ns, std::int64_t now_ns);
+  void forget_errors();
   void watch_error(std::int64_t now_ns);
   void watch_odometry(std::int64_t now_ns);
   void watch_navigator(std::int64_t now_ns);
   void try_to_land(std::int64_t now_ns);
   void land(std::int64_t now_ns);
   void stay(const Error& why, const Vec3& position_map);
-  void lose(std::int64_t now_ns, const std::string& why);
+  void lose(const Error& why, std::int64_t since_ns);
+  void stop_where_it_is(const Vec3& acceleration_map, std::int64_t last_stamp_ns,
+                        std::int64_t now_ns);
   std::uint64_t followed_id() const;
   double turn(std::int64_t now_ns);
   double wanted_yaw(std::int64_t now_ns) const;
@@ -120,18 +140,24 @@ class Tracker {
   Config config_;
   PositionController controller_;
   Reference reference_ = Reference::hold(Vec3::Zero());
-  std::vector<CommittedTrajectory> queue_;  // by start time
+  std::vector<Reference> queue_;  // by start time
 
   bool has_state_ = false;
   RigidBodyState state_;
   std::int64_t stamp_ns_ = 0;
   double since_last_s_ = 0.0;  // between the last two states
   std::int64_t now_ns_ = 0;
+  std::int64_t called_ns_ = 0;               // the last step() or watch()
+  bool whereabouts_lost_ = false;            // until the next odometry
+  std::optional<std::int64_t> jumped_ns_;    // when odometry last jumped
+  std::optional<std::int64_t> disputed_ns_;  // when it last jumped to and fro
   double first_yaw_rad_ = 0.0;
   double yaw_rad_ = 0.0;
 
   Error lost_{ErrorCode::ok, ""};  // why, until another trajectory is switched to
   std::uint64_t lost_id_ = 0;
+  Error stalled_{ErrorCode::ok, ""};  // for a second, so that it can be reported
+  std::int64_t stalled_ns_ = 0;
   Error refused_{ErrorCode::ok, ""};      // the newest odometry, or too far from where it holds
   Error deserted_{ErrorCode::ok, ""};     // by the navigator, until it is heard again
   std::optional<std::int64_t> heard_ns_;  // the navigator's last sign of life

@@ -28,7 +28,7 @@ class ActiveSetSolver {
   ActiveSetSolver& operator=(ActiveSetSolver&&) noexcept;
   ~ActiveSetSolver();
 
-  /// The solution is in joints(). infeasible is proved: by constraints of which a combination with
+  /// The solution is in knots(). infeasible is proved: by constraints of which a combination with
   /// multipliers not below zero cannot hold (Farkas), or a bound on the jerk that the acceleration
   /// limits do not allow. @pre the problem's sizes agree, problem.scale is false
   Outcome solve(const SplineProblem& problem, const Settings& settings);
@@ -38,7 +38,7 @@ class ActiveSetSolver {
   /// Whether an outcome is final; where not, SplineSolver finds the same optimum.
   static bool decided(const Outcome& outcome);
 
-  const std::vector<Joint>& joints() const { return solution_; }
+  const std::vector<Knot>& knots() const { return solution_; }
   /// Constraints that bind at the solution.
   int binding() const;
 
@@ -47,7 +47,7 @@ class ActiveSetSolver {
   void iterate(const Settings& settings, Outcome& out);
 
   std::unique_ptr<Memory> memory_;
-  std::vector<Joint> solution_;
+  std::vector<Knot> solution_;
 };
 
 }  // namespace goshawk::trajectory_optimizer

@@ -2,29 +2,22 @@
 
 #include <vector>
 
-#include "goshawk/core/certificate.hpp"
-#include "goshawk/trajectory_optimizer/joint_spline.hpp"
+#include "goshawk/core/half_space.hpp"
+#include "goshawk/core/limits.hpp"
+#include "goshawk/trajectory_optimizer/knot.hpp"
 
 namespace goshawk::trajectory_optimizer {
 
-/// normal . y <= offset
-struct Face {
-  Vec3 normal;
-  double offset = 0.0;
-
-  bool operator==(const Face&) const = default;
-};
-
-/// A control point of a piece, a map of one joint alone, with the faces it must stay behind:
+/// A control point of a piece, a map of one knot alone, with the faces it must stay behind:
 /// faces[begin] .. faces[end - 1].
 struct FacePoint {
-  int joint = 0;
-  Vec3 map;  // y = joint * map
+  int knot = 0;
+  Vec3 map;  // y = knot * map
   int begin = 0;
   int end = 0;
 };
 
-/// A convex problem in the joints of a spline with pieces of given durations (in units of a time
+/// A convex problem in the knots of a spline with pieces of given durations (in units of a time
 /// sigma) and, when scale is set, in eta = kappa^2 with t = kappa sigma:
 ///
 ///   minimise    time_weight * eta + jerk_weight / 2 * integral of |p'''|^2
@@ -34,9 +27,9 @@ struct FacePoint {
 ///               or horizontally and vertically apart        (horizontal_vertical)
 ///               |J_j| <= j_max (3 eta - 1) / 2, the tangent of eta^1.5 at 1
 ///
-/// over the inner joints; the first and the last are given, as affine functions of eta:
-/// joints[0] + (eta - 1) start_rate. Without scale eta is 1. Source: the thesis' Improved
-/// Minimum-Jerk section in joint states, made jointly convex in shape and time scale.
+/// over the inner knots; the first and the last are given, as affine functions of eta:
+/// knots[0] + (eta - 1) start_rate. Without scale eta is 1. Source: the thesis' Improved
+/// Minimum-Jerk section in knot states, made jointly convex in shape and time scale.
 struct SplineProblem {
   bool scale = true;
   LimitNorm norm = LimitNorm::euclidean;
@@ -48,11 +41,11 @@ struct SplineProblem {
   std::vector<double> v_max;      // m, of each piece
   std::vector<double> a_max;      // m
   std::vector<double> j_max;      // m, or none: no limit on the jerk
-  std::vector<Joint> joints;      // m + 1: the ends, and a guess for the others
-  Joint start_rate = Joint::Zero();
-  Joint goal_rate = Joint::Zero();
+  std::vector<Knot> knots;        // m + 1: the ends, and a guess for the others
+  Knot start_rate = Knot::Zero();
+  Knot goal_rate = Knot::Zero();
   std::vector<FacePoint> face_points;  // of points that are not constant
-  std::vector<Face> faces;
+  std::vector<HalfSpace> faces;        // in the problem's unit of length
 
   int pieces() const { return int(durations.size()); }
   /// Keeps the capacity of every vector.

@@ -10,7 +10,7 @@ namespace goshawk::trajectory_optimizer {
 
 /// Primal-dual interior-point method for SplineProblem: Mehrotra's predictor-corrector on rows that
 /// are linear (faces) or smooth and convex (limits), one slack and one multiplier each (Nocedal and
-/// Wright, Numerical Optimization, chapter 19). The Newton system, reduced to the joints, is
+/// Wright, Numerical Optimization, chapter 19). The Newton system, reduced to the knots, is
 /// block-tridiagonal with one border; the work of an iteration is linear in pieces and faces. A
 /// solver keeps its memory: nothing is allocated in a solve no larger than an earlier one, and no
 /// answer depends on an earlier one.
@@ -41,10 +41,10 @@ class SplineSolver {
   SplineSolver& operator=(SplineSolver&&) noexcept;
   ~SplineSolver();
 
-  /// The solution is in joints() and the outcome's eta. @pre the problem's sizes agree
+  /// The solution is in knots() and the outcome's eta. @pre the problem's sizes agree
   Outcome solve(const SplineProblem& problem, const Settings& settings);
 
-  const std::vector<Joint>& joints() const { return solution_; }
+  const std::vector<Knot>& knots() const { return solution_; }
 
   /// What the durations are worth: the derivative of the least cost by the logarithm of each
   /// piece's duration, by the multipliers of the last problem (envelope theorem). It is as exact
@@ -53,7 +53,7 @@ class SplineSolver {
 
   /// The Lagrangian f(x) + z'g(x) of the last problem with its final multipliers, anywhere: its
   /// gradient is zero at a solution. For tests by finite differences. @pre a solve went before
-  double lagrangian(const std::vector<Joint>& joints, double eta);
+  double lagrangian(const std::vector<Knot>& knots, double eta);
 
  private:
   struct Memory;
@@ -62,7 +62,7 @@ class SplineSolver {
 
   std::unique_ptr<Memory> memory_;
   SplineProblem relaxed_;
-  std::vector<Joint> solution_;
+  std::vector<Knot> solution_;
 };
 
 }  // namespace goshawk::trajectory_optimizer

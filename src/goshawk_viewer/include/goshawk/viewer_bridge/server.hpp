@@ -8,18 +8,20 @@
 #include <vector>
 
 #include "goshawk/core/result.hpp"
+#include "goshawk/viewer_bridge/origins.hpp"
 
 namespace goshawk::viewer_bridge {
 
 struct ServerOptions {
-  std::string address = "127.0.0.1";  // IPv4 of this machine; who can reach it can send goals
-  int port = 8765;                    // 0: any that is free
+  std::string address =
+      "127.0.0.1";  // IPv4 of this machine; anyone who can reach it can send goals
+  int port = 8765;  // 0: any that is free
   std::string name = "goshawk";
-  std::string origins;                   // web pages beyond local ones, with commas, or "any"
-  int clients = 16;                      // at once
-  std::size_t queue_bytes = 32U << 20U;  // unsent to one client; what is beyond is dropped
-  double full_queue_s = 10.0;            // a client that never reads is closed after that
-  int client_messages_per_s = 500;       // a client that sends more is closed
+  std::string origins = kDefaultOrigins;  // as Origins::parse() reads them
+  int clients = 16;                       // at once
+  std::size_t queue_bytes = 32U << 20U;   // unsent to one client; beyond it, messages are dropped
+  double full_queue_s = 10.0;             // a client that never reads is closed after that
+  int client_messages_per_s = 500;        // a client that sends more is closed
 };
 
 /// A topic as clients see it.
@@ -37,22 +39,23 @@ struct ClientEvent {
   std::uint64_t client = 0;
   std::uint32_t channel = 0;         // subscribed
   std::string topic;                 // advertised, published
-  std::string schema_name;           // likewise
-  std::string encoding;              // likewise: "cdr" or "json"
+  std::string schema_name;           // advertised, published
+  std::string encoding;              // advertised, published: "cdr" or "json"
   std::vector<unsigned char> bytes;  // published
 };
 
 enum class StatusLevel { info = 0, warning = 1, error = 2 };
 
 /// The Foxglove WebSocket protocol, version 1 (foxglove.websocket.v1), without any middleware: it
-/// offers channels, sends messages to whoever subscribed, and hands over what clients publish.
+/// offers channels, sends messages to their subscribers, and hands over what clients publish.
 ///
 /// It never waits for a client and never keeps more for one than ServerOptions::queue_bytes. A
-/// client that sends what is no message of the protocol is closed with a sentence. All members may
-/// be called from any thread; one thread of its own serves the sockets.
+/// client that sends anything but messages of the protocol is closed with a sentence. All members
+/// may be called from any thread; one thread of its own serves the sockets.
 class Server {
  public:
-  /// @return invalid_parameter for an address that is none, io_failed where the port is in use
+  /// @return invalid_parameter for a bad address, port or list of origins; io_failed if the port is
+  /// in use
   static Result<std::unique_ptr<Server>> start(const ServerOptions& options);
   ~Server();
 

@@ -1,0 +1,118 @@
+// The page's code that needs no browser: node page_code_test.mjs MESSAGES.js PAGE_FOLDER
+import {readFileSync} from 'node:fs';
+import test from 'node:test';
+import assert from 'node:assert/strict';
+
+const [messages, page] = process.argv.slice(2);
+const {Goshawk, V3} = new Function(
+    ['geometry.js', 'theme.js', 'octomap.js', 'sight.js', 'cdr.js'].map(
+        name => readFileSync(`${page}/${name}`, 'utf8')).join('\n') + '\nreturn {Goshawk, V3};')();
+
+const kBox = {normals: [1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1],
+              offsets: [3, -1, 5, -2, 2, 1]};  // [1, 3] x [2, 5] x [-1, 2]
+
+test('a box has six faces of four corners and its area', () => {
+  const faces = Goshawk.polytopeFaces(kBox.normals, kBox.offsets);
+  const area = face => face.slice(2).reduce((sum, p, k) => sum + V3.norm(V3.cross(
+      V3.add(face[k + 1], face[0], -1), V3.add(p, face[0], -1))) / 2, 0);
+  assert.deepEqual(faces.map(f => f.length), [4, 4, 4, 4, 4, 4]);
+  assert.ok(Math.abs(faces.reduce((sum, f) => sum + area(f), 0) - 2 * (6 + 6 + 9)) < 1e-9);
+});
+
+test('a trajectory has the positions, velocities and accelerations of its curve', () => {
+  // x = t^2 over two seconds, as a quintic; then on at its last speed.
+  const square = [0, 0, 0.4, 1.2, 2.4, 4].map(x => [x, 0, 1]);
+  const line = [0, 1, 2, 3, 4, 5].map(k => [4 + 0.8 * k, 0, 1]);
+  const trajectory = new Goshawk.Trajectory(
+      [{duration: 2, points: square}, {duration: 1, points: line}]);
+  for (const t of [0, 0.3, 1.1, 1.9]) {
+    const s = trajectory.sample(t);
+    assert.ok(V3.norm(V3.add(s.position, [t * t, 0, 1], -1)) < 1e-9);
+    assert.ok(V3.norm(V3.add(s.velocity, [2 * t, 0, 0], -1)) < 1e-9);
+    assert.ok(V3.norm(V3.add(s.acceleration, [2, 0, 0], -1)) < 1e-9);
+  }
+  assert.ok(V3.norm(V3.add(trajectory.sample(9).position, [8, 0, 1], -1)) < 1e-9);
+});
+
+// Fifteen inner nodes along child 7 (all axes upwards), then one node of voxels at the upper end.
+const cornerTree = bits => Uint8Array.from(
+    [...Array(15).fill([0, 3 << 6]), [bits & 255, bits >> 8]].flat());
+
+test('an OctoMap is read voxel by voxel, and what is cut off is refused', () => {
+  // Child 0 is free, child 1 (x upwards) and child 6 (y and z upwards) are occupied.
+  const tree = cornerTree(1 | 2 << 2 | 2 << 12);
+  const voxels = Goshawk.octomapVoxels(tree, 0.5);
+  assert.deepEqual(voxels.size, [2, 2, 2]);
+  assert.deepEqual(voxels.origin, [16383, 16383, 16383]);
+  assert.deepEqual(Array.from(voxels.cells), [0, 1, 0, 0, 0, 0, 1, 0]);
+  for (let k = 1; k < tree.length; ++k) {
+    assert.throws(() => Goshawk.octomapVoxels(tree.subarray(0, k), 0.5));
+  }
+  assert.throws(() => Goshawk.octomapVoxels(new Uint8Array(100000).fill(255), 0.5));
+  assert.equal(Goshawk.octomapVoxels(new Uint8Array(0), 0.5), null);
+});
+
+test('a voxel in a corner has the faces that can be seen, and nooks', () => {
+  const voxels = new Goshawk.Voxels([0, 0, 0], 1, [2, 1, 1]);
+  voxels.cells.fill(1);
+  assert.equal(Goshawk.voxelFaces(voxels, 0, 1).face.length, 10);
+  assert.ok(Goshawk.voxelFaces(voxels, 0, 1).ao.every(openness => openness === 3));
+});
+
+test('a message is read by its schema, and one that is cut off is refused', () => {
+  const schema = new Goshawk.Schema('uint32 id\nstring name\npkg/Point[] points\nfloat64[2] pair\n' +
+                                    '====\nMSG: pkg/Point\nfloat64 x\n');
+  const view = new DataView(new ArrayBuffer(60));
+  view.setUint8(1, 1);                                // little endian
+  view.setUint32(4, 7, true);
+  view.setUint32(8, 3, true);
+  'hi'.split('').forEach((c, k) => view.setUint8(12 + k, c.charCodeAt(0)));
+  view.setUint32(16, 1, true);                        // one point, aligned to eight
+  [2.5, 3.5, 4.5].forEach((x, k) => view.setFloat64(20 + 8 * k, x, true));
+  assert.deepEqual(schema.read(view), {id: 7, name: 'hi', points: [{x: 2.5}], pair: [3.5, 4.5]});
+  for (let size = 4; size < 44; ++size) {
+    assert.throws(() => schema.read(new DataView(view.buffer, 0, size)), `${size} bytes`);
+  }
+});
+
+function studio() {
+  const converters = {}, module = {exports: {}};
+  new Function('module', 'const kPlaces = [];\n' + readFileSync(messages, 'utf8'))(module);
+  module.exports.activate({registerMessageConverter: c => { converters[c.fromSchemaName] = c.converter; }});
+  return converters;
+}
+const stamp = sec => ({sec, nsec: 0});
+const point = ([x, y, z]) => ({x, y, z});
+
+test('the studio draws a plan as a corridor and a trajectory by speed', () => {
+  const plan = {header: {stamp: stamp(1)}, stop_after: 0, stop_pieces: [], stop_polytopes: [], nominal: {
+    request: {limits: {v_max: 2}}, polytopes: [kBox],
+    pieces: [{duration: 1, control_points: [0, 1, 2, 3, 4, 5].map(k => point([0.4 * k, 3, 0]))}]}};
+  const {entities} = studio()['goshawk_msgs/msg/CommittedTrajectory'](plan);
+  const [corridor, trajectory] = entities;
+  assert.equal(corridor.lines[0].points.length, 2 * 24);  // each edge from both its faces
+  assert.equal(corridor.triangles[0].indices.length, 3 * 12);
+  const line = trajectory.lines[0];
+  assert.deepEqual(line.points[line.points.length - 1], {x: 2, y: 3, z: 0});
+  assert.equal(line.colors.length, line.points.length);
+  assert.ok(line.colors[0].r > 0.9);  // at the limit
+});
+
+test('the studio draws the track that was flown, not across gaps, and takes back what is played again', () => {
+  const draw = studio()['nav_msgs/msg/Odometry'];
+  const at = (t, x) => draw({header: {stamp: stamp(t)}, pose: {pose: {
+    position: point([x, 0, 1]), orientation: {x: 0, y: 0, z: 0, w: 1}}}}).entities[0].lines[0].points;
+  at(1.0, 0);
+  at(1.1, 1);
+  assert.equal(at(1.2, 2).length, 4);
+  assert.equal(at(5.0, 9).length, 4);  // a gap
+  assert.equal(at(1.15, 5).length, 4);
+  assert.deepEqual(at(1.2, 6).slice(-1)[0], {x: 6, y: 0, z: 1});
+});
+
+test('the studio draws the faces of a map, and counts what it draws', () => {
+  const draw = studio()['octomap_msgs/msg/Octomap'];
+  const {triangles} = draw({header: {stamp: stamp(1)}, data: cornerTree(2), resolution: 0.5}).entities[0];
+  assert.equal(triangles[0].points.length, 6 * 4);
+  assert.equal(globalThis.goshawkDrawn['octomap_msgs/msg/Octomap'], 1);
+});
