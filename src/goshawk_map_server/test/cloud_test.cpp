@@ -305,8 +305,9 @@ TEST(Cloud, WhatIsWrongIsNamed) {
 
 std::vector<Vec3> room(const Vec3& at, const Vec3& size = Vec3(20, 20, 5)) {
   std::vector<Vec3> points;
-  for (double x = 0.0; x <= 1.0; x += 0.05) {
-    for (double y = 0.0; y <= 1.0; y += 0.05) {
+  for (int i = 0; i <= 20; ++i) {
+    for (int j = 0; j <= 20; ++j) {
+      const double x = i / 20.0, y = j / 20.0;
       points.push_back(at + size.cwiseProduct(Vec3(x, y, 0)));
       points.push_back(at + size.cwiseProduct(Vec3(x, 0, y)));
     }
