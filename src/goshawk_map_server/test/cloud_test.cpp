@@ -334,6 +334,31 @@ TEST(Cloud, AStrayPointFarAwayIsNamedAndDoesNotBreakTheMap) {
   EXPECT_THAT(load("o.pcd", pcd(room(Vec3::Zero())))->notes, IsEmpty());
 }
 
+TEST(Cloud, AFewPointsAboveAFloorAreNotStray) {
+  std::vector<Vec3> points;
+  for (int i = 0; i <= 40; ++i) {
+    for (int j = 0; j <= 40; ++j) points.emplace_back(0.5 * i, 0.5 * j, 0.0);
+  }
+  points.emplace_back(0, 0, 5);
+  points.emplace_back(20, 20, 5);
+  EXPECT_THAT(load("f.pcd", pcd(points))->notes, IsEmpty());
+  points.emplace_back(10, 10, 300);
+  const auto source = load("f.pcd", pcd(points));
+  ASSERT_EQ(source->notes.size(), 1U);
+  EXPECT_THAT(source->notes[0],
+              AllOf(HasSubstr("1 of 1684 points"), HasSubstr("(20.000, 20.000, 5.000)")));
+}
+
+TEST(Cloud, AProjectedCloudWithAStrayPointNamesBoth) {
+  std::vector<Vec3> points = room(Vec3(691000, 4532000, 100));
+  points.emplace_back(0, 0, 0);
+  const auto refused = load("u.pcd", pcd(points));
+  EXPECT_EQ(refused.code(), ErrorCode::map_too_large);
+  EXPECT_THAT(refused.error().message,
+              AllOf(HasSubstr("1 of 883 points"), HasSubstr("cloud_origin_x_m to 691000"),
+                    HasSubstr("cloud_origin_y_m to 4532000")));
+}
+
 TEST(Cloud, ProjectedCoordinatesNameTheOriginThatBringsThemHome) {
   const Vec3 at(691000, 4532000, 100);
   const auto refused = load("u.pcd", pcd(room(at)));
