@@ -10,6 +10,8 @@
 namespace goshawk::map_server {
 namespace {
 
+constexpr double kShortest_voxels = 1e-6;  // [voxel edges] a ray up to this ends at the sensor
+
 octomap::point3d to_point(const Vec3& p) {
   return {float(p.x()), float(p.y()), float(p.z())};
 }
@@ -75,8 +77,9 @@ InsertedScan Scan::sort(std::span<const Vec3> points, const Box* box, double res
   for (const Vec3& p : points) {
     const Vec3 ray = p - origin_;
     const double length_m = ray.norm();
-    // Many drivers write a missing return as the sensor's own place: it would block that voxel.
-    if (!std::isfinite(length_m) || length_m == 0.0) {
+    // Many drivers write a missing return as the sensor's own place: it would block that voxel. A
+    // ray whose square is 0 in float has no direction: OctoMap would never find its end.
+    if (!std::isfinite(length_m) || length_m <= kShortest_voxels * resolution_m) {
       ++result.left_out;
       continue;
     }

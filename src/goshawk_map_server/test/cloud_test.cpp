@@ -230,6 +230,16 @@ TEST(Scan, RaysThatEndOutsideTheBoxClearWhatTheySawInsideIt) {
   EXPECT_EQ(known, voxelize(source).value().known.count()) << "nothing outside the box";
 }
 
+// Its key is another than the sensor's, but in float its ray has no length.
+TEST(Scan, APointThatIsAllButAtTheSensorIsLeftOut) {
+  LoadOptions options;
+  options.cloud = CloudMeaning::scan;
+  const auto source =
+      load("s.pcd", pcd({Vec3(-1e-30, -1e-35, -1e-35), Vec3(2.1, 0.1, 0.1)}), options);
+  ASSERT_TRUE(source) << source.error().message;
+  EXPECT_EQ(voxelize(*source).value().occupied.count(), 1);
+}
+
 TEST(Scan, ASensorOutsideTheBoxAndRaysThatMissItAreFine) {
   LoadOptions options;
   options.cloud = CloudMeaning::scan;
