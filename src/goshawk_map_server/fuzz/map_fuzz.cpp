@@ -15,6 +15,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   options.cloud = CloudMeaning(data[0] / 8 % 3);
   const auto source = load_map_bytes({reinterpret_cast<const char*>(data + 1), size - 1},
                                      kNames[data[0] % 8 % 5], options);
-  if (source ? source->tree == nullptr : source.error().message.empty()) std::abort();
+  // Clouds and voxel maps come as bits, trees and scans as a tree: always one of the two.
+  if (source ? (source->tree != nullptr) == source->voxels.has_value()
+             : source.error().message.empty()) {
+    std::abort();
+  }
   return 0;
 }

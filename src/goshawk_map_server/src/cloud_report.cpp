@@ -6,12 +6,14 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 namespace goshawk::map_server {
 namespace {
 
 constexpr std::size_t kFewest = 100;     // points from which on "most of them" means something
 constexpr double kFewShare = 0.005;      // of all points, to each side of each axis
+constexpr double kLeastGap_m = 20.0;     // between a point and all others
 constexpr double kMuchLarger = 4.0;      // a box, for the sake of a few points
 constexpr double kLongest_m = 1000.0;    // a map that is longer in two directions is suspicious
 constexpr double kReach_voxels = 32768.0;    // [voxels] that an OctoMap reaches from the origin
@@ -37,7 +39,7 @@ struct Outliers {
   Box rest;
 };
 
-// What most points span along each axis, widened by its own length to both sides.
+// What most points span along each axis.
 Box usual_box(const Points& points) {
   Box box;
   std::vector<double> values(points.size());
@@ -48,33 +50,39 @@ Box usual_box(const Points& points) {
       std::nth_element(values.begin(), values.begin() + std::ptrdiff_t(n), values.end());
       return values[n];
     };
-    const double low = nth(few), high = nth(points.size() - 1 - few);
-    const double length = std::max(1.0, high - low);
-    box.lower_map[axis] = low - length;
-    box.upper_map[axis] = high + length;
+    box.lower_map[axis] = nth(few);
+    box.upper_map[axis] = nth(points.size() - 1 - few);
   }
   return box;
 }
 
+double distance(const Box& box, const Vec3& p) {
+  return (p - p.cwiseMax(box.lower_map).cwiseMin(box.upper_map)).norm();
+}
+
+// Outwards from most points: the first gap that is wider than all before it is long, along
+// whatever axis (a floor with a few points above it has no outliers), parts the others from them.
 std::optional<Outliers> find_outliers(const Points& points, double resolution_m) {
   if (points.size() < kFewest) return {};
   const Box usual = usual_box(points);
-  Outliers found;
-  Points rest;
-  rest.reserve(points.size());
-  const Vec3 middle = 0.5 * (usual.lower_map + usual.upper_map);
-  for (const Vec3& p : points) {
-    if ((p.array() >= usual.lower_map.array()).all() &&
-        (p.array() <= usual.upper_map.array()).all()) {
-      rest.push_back(p);
-      continue;
-    }
-    if (found.count++ == 0 || (p - middle).norm() > (found.farthest_map - middle).norm()) {
-      found.farthest_map = p;
-    }
+  std::vector<std::pair<double, std::size_t>> others;  // distance [m], number
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (const double d = distance(usual, points[i]); d > 0.0) others.emplace_back(d, i);
   }
-  if (found.count == 0) return {};
-  found.rest = box_of(rest);
+  std::ranges::sort(others);
+  Outliers found;
+  found.rest = usual;
+  std::size_t near = 0;
+  for (; near < others.size(); ++near) {
+    const Vec3& p = points[others[near].second];
+    const double length_m = (found.rest.upper_map - found.rest.lower_map).maxCoeff();
+    if (distance(found.rest, p) > std::max(kLeastGap_m, length_m)) break;
+    found.rest.lower_map = found.rest.lower_map.cwiseMin(p);
+    found.rest.upper_map = found.rest.upper_map.cwiseMax(p);
+  }
+  if (near == others.size()) return {};
+  found.count = std::int64_t(others.size() - near);
+  found.farthest_map = points[others.back().second];
   const double whole = volume(box_of(points), resolution_m);
   if (whole < kMuchLarger * volume(found.rest, resolution_m)) return {};
   return found;
@@ -119,6 +127,8 @@ Error explain(Error error, const Points& points, const LoadOptions& options) {
   const Box box = box_of(points);
   if (const auto outliers = find_outliers(points, options.resolution_m)) {
     error.message = sentence(*outliers, points.size()) + " (" + error.message + ")";
+    const auto far = far_from_origin(outliers->rest, options.resolution_m);
+    if (far) error.message += "; " + *far;
   } else if (const auto far = far_from_origin(box, options.resolution_m)) {
     error.message = *far;
   } else if (const auto unit = other_unit(box)) {

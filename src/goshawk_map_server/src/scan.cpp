@@ -10,6 +10,8 @@
 namespace goshawk::map_server {
 namespace {
 
+constexpr double kShortest_voxels = 1e-6;  // [voxel edges] a ray up to this ends at the sensor
+
 octomap::point3d to_point(const Vec3& p) {
   return {float(p.x()), float(p.y()), float(p.z())};
 }
@@ -33,12 +35,12 @@ Result<ScanKeys> keys_of(const Box& box, double resolution_m) {
   return ScanKeys{lower, lower + raster->size};
 }
 
-// How far a ray to p, given by its share of the way, stays inside the box; below 0 if it misses it.
-double exit_of(const Box& box, const Vec3& origin, const Vec3& ray) {
+// Does the ray reach the box before its end?
+bool meets(const Box& box, const Vec3& origin, const Vec3& ray) {
   double enter = 0.0, leave = 1.0;
   for (int a = 0; a < 3; ++a) {
     if (ray[a] == 0.0) {
-      if (origin[a] < box.lower_map[a] || origin[a] >= box.upper_map[a]) return -1.0;
+      if (origin[a] < box.lower_map[a] || origin[a] >= box.upper_map[a]) return false;
       continue;
     }
     const double u = (box.lower_map[a] - origin[a]) / ray[a];
@@ -46,71 +48,57 @@ double exit_of(const Box& box, const Vec3& origin, const Vec3& ray) {
     enter = std::max(enter, std::min(u, v));
     leave = std::min(leave, std::max(u, v));
   }
-  return enter <= leave ? leave : -1.0;
+  return enter <= leave;
 }
 
-/// One scan on its way into the tree: what it hits, and rays that only clear.
+/// One scan on its way into the tree.
 class Scan {
  public:
-  Scan(const octomap::OcTree& tree, const Vec3& origin, double max_range_m, const Box* box)
-      : tree_(tree), origin_(origin), max_range_m_(max_range_m), box_(box) {}
+  Scan(const Vec3& origin, double max_range_m) : origin_(origin), max_range_m_(max_range_m) {}
 
-  InsertedScan sort(std::span<const Vec3> points);
-  void write(octomap::OcTree& tree, const ScanKeys* keys);
+  /// @param box may be null
+  InsertedScan sort(std::span<const Vec3> points, const Box* box, double resolution_m);
+  void write(octomap::OcTree& tree, const ScanKeys* keys) const;
 
  private:
-  void clear_to(const Vec3& ray);
-
-  const octomap::OcTree& tree_;
   Vec3 origin_;
   double max_range_m_;
-  const Box* box_;
-  octomap::Pointcloud hits_;
-  std::vector<Vec3> cleared_;  // ends of rays [m] map
+  octomap::Pointcloud ends_;
 };
 
-InsertedScan Scan::sort(std::span<const Vec3> points) {
+InsertedScan Scan::sort(std::span<const Vec3> points, const Box* box, double resolution_m) {
   InsertedScan result;
-  hits_.reserve(points.size());
+  Box near;  // holds the raster around the box, and what rounding may move into it
+  if (box != nullptr) {
+    const Vec3 margin = Vec3::Constant(2.0 * resolution_m);
+    near = {box->lower_map - margin, box->upper_map + margin};
+  }
+  ends_.reserve(points.size());
   for (const Vec3& p : points) {
     const Vec3 ray = p - origin_;
     const double length_m = ray.norm();
-    // Many drivers write a missing return as the sensor's own place: it would block that voxel.
-    if (!std::isfinite(length_m) || length_m == 0.0) {
+    // Many drivers write a missing return as the sensor's own place: it would block that voxel. A
+    // ray whose square is 0 in float has no direction: OctoMap would never find its end.
+    if (!std::isfinite(length_m) || length_m <= kShortest_voxels * resolution_m) {
       ++result.left_out;
-    } else if (box_ != nullptr && !box_->holds(p)) {
-      ++result.cut;
-      clear_to(ray);
-    } else {
-      // OctoMap computes in float: a far end is pulled in first, still beyond the range.
-      const double far = 2.0 * max_range_m_;
-      hits_.push_back(to_point(length_m > far ? Vec3(origin_ + ray * (far / length_m)) : p));
+      continue;
     }
+    if (box != nullptr && !box->holds(p)) {
+      ++result.cut;
+      if (!meets(near, origin_, ray)) continue;
+    }
+    // OctoMap computes in float: a far end is pulled in first, still beyond the range.
+    const double far = 2.0 * max_range_m_;
+    ends_.push_back(to_point(length_m > far ? Vec3(origin_ + ray * (far / length_m)) : p));
   }
   return result;
 }
 
-// A ray that ends outside the box, up to a little beyond where it leaves it: OctoMap leaves out the
-// last voxel of a ray.
-void Scan::clear_to(const Vec3& ray) {
-  const double leave = exit_of(*box_, origin_, ray);
-  if (leave < 0.0) return;
-  const double length_m = ray.norm();
-  const double beyond = 2.0 * tree_.getResolution() / length_m;
-  const double share = std::min({1.0, leave + beyond, max_range_m_ / length_m});
-  cleared_.push_back(origin_ + share * ray);
-}
-
-void Scan::write(octomap::OcTree& tree, const ScanKeys* keys) {
+// Rays go to their own ends, whatever the box: with another end, rounding takes another way round
+// the corners of voxels, and the box would clear what the whole scan did not see.
+void Scan::write(octomap::OcTree& tree, const ScanKeys* keys) const {
   octomap::KeySet free, occupied;
-  tree.computeUpdate(hits_, to_point(origin_), free, occupied, max_range_m_);
-  octomap::KeyRay ray;
-  for (const Vec3& end : cleared_) {
-    if (!tree.computeRayKeys(to_point(origin_), to_point(end), ray)) continue;
-    for (const octomap::OcTreeKey& key : ray) {
-      if (occupied.find(key) == occupied.end()) free.insert(key);
-    }
-  }
+  tree.computeUpdate(ends_, to_point(origin_), free, occupied, max_range_m_);
   const auto inside = [&](const octomap::OcTreeKey& key) {
     return keys == nullptr || keys->holds(key);
   };
@@ -146,8 +134,8 @@ Result<InsertedScan> insert_scan(octomap::OcTree& tree, std::span<const Vec3> po
     if (!found) return found.error();
     keys = *found;
   }
-  Scan scan(tree, sensor_origin_map, max_range_m, box);
-  const InsertedScan result = scan.sort(points_map);
+  Scan scan(sensor_origin_map, max_range_m);
+  const InsertedScan result = scan.sort(points_map, box, tree.getResolution());
   scan.write(tree, box != nullptr ? &keys : nullptr);
   return result;
 }

@@ -11,7 +11,7 @@ namespace goshawk::map_server {
 
 struct InsertedScan {
   std::int64_t left_out = 0;  // points that are not finite, or at the sensor itself
-  std::int64_t cut = 0;       // rays that end outside the box: they clear it and hit nothing
+  std::int64_t cut = 0;       // rays that end outside the box: they clear what they cross of it
 };
 
 /// OctoMap's insertPointCloud, kept from what it cannot bear: points that are not finite or far

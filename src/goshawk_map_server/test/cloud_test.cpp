@@ -230,6 +230,16 @@ TEST(Scan, RaysThatEndOutsideTheBoxClearWhatTheySawInsideIt) {
   EXPECT_EQ(known, voxelize(source).value().known.count()) << "nothing outside the box";
 }
 
+// Its key is another than the sensor's, but in float its ray has no length.
+TEST(Scan, APointThatIsAllButAtTheSensorIsLeftOut) {
+  LoadOptions options;
+  options.cloud = CloudMeaning::scan;
+  const auto source =
+      load("s.pcd", pcd({Vec3(-1e-30, -1e-35, -1e-35), Vec3(2.1, 0.1, 0.1)}), options);
+  ASSERT_TRUE(source) << source.error().message;
+  EXPECT_EQ(voxelize(*source).value().occupied.count(), 1);
+}
+
 TEST(Scan, ASensorOutsideTheBoxAndRaysThatMissItAreFine) {
   LoadOptions options;
   options.cloud = CloudMeaning::scan;
@@ -305,8 +315,9 @@ TEST(Cloud, WhatIsWrongIsNamed) {
 
 std::vector<Vec3> room(const Vec3& at, const Vec3& size = Vec3(20, 20, 5)) {
   std::vector<Vec3> points;
-  for (double x = 0.0; x <= 1.0; x += 0.05) {
-    for (double y = 0.0; y <= 1.0; y += 0.05) {
+  for (int i = 0; i <= 20; ++i) {
+    for (int j = 0; j <= 20; ++j) {
+      const double x = i / 20.0, y = j / 20.0;
       points.push_back(at + size.cwiseProduct(Vec3(x, y, 0)));
       points.push_back(at + size.cwiseProduct(Vec3(x, 0, y)));
     }
@@ -331,6 +342,31 @@ TEST(Cloud, AStrayPointFarAwayIsNamedAndDoesNotBreakTheMap) {
   options.box = Box{Vec3(0, 0, 0), Vec3(21, 21, 6)};
   EXPECT_THAT(load("o.pcd", pcd(points), options)->notes, IsEmpty());
   EXPECT_THAT(load("o.pcd", pcd(room(Vec3::Zero())))->notes, IsEmpty());
+}
+
+TEST(Cloud, AFewPointsAboveAFloorAreNotStray) {
+  std::vector<Vec3> points;
+  for (int i = 0; i <= 40; ++i) {
+    for (int j = 0; j <= 40; ++j) points.emplace_back(0.5 * i, 0.5 * j, 0.0);
+  }
+  points.emplace_back(0, 0, 5);
+  points.emplace_back(20, 20, 5);
+  EXPECT_THAT(load("f.pcd", pcd(points))->notes, IsEmpty());
+  points.emplace_back(10, 10, 300);
+  const auto source = load("f.pcd", pcd(points));
+  ASSERT_EQ(source->notes.size(), 1U);
+  EXPECT_THAT(source->notes[0],
+              AllOf(HasSubstr("1 of 1684 points"), HasSubstr("(20.000, 20.000, 5.000)")));
+}
+
+TEST(Cloud, AProjectedCloudWithAStrayPointNamesBoth) {
+  std::vector<Vec3> points = room(Vec3(691000, 4532000, 100));
+  points.emplace_back(0, 0, 0);
+  const auto refused = load("u.pcd", pcd(points));
+  EXPECT_EQ(refused.code(), ErrorCode::map_too_large);
+  EXPECT_THAT(refused.error().message,
+              AllOf(HasSubstr("1 of 883 points"), HasSubstr("cloud_origin_x_m to 691000"),
+                    HasSubstr("cloud_origin_y_m to 4532000")));
 }
 
 TEST(Cloud, ProjectedCoordinatesNameTheOriginThatBringsThemHome) {

@@ -79,13 +79,14 @@ std::string pcd_compressed(const std::vector<Vec3>& points) {
          raw(std::uint32_t(size)) + raw(std::uint32_t(plain.size())) + packed;
 }
 
+// Points among other things; faces have tests of their own (cloud_test.cpp).
 std::string ply_header(const std::string& format, std::size_t points) {
   return "ply\nformat " + format +
          " 1.0\ncomment made by a test\nelement camera 2\n"
          "property list uchar int ids\nproperty char flag\nelement vertex " +
          std::to_string(points) +
          "\nproperty uchar red\nproperty double x\nproperty float y\nproperty float z\n"
-         "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+         "element marker 1\nproperty list uchar int vertices\nend_header\n";
 }
 
 std::string ply_ascii(const std::vector<Vec3>& points) {
@@ -104,6 +105,7 @@ std::string ply_binary(const std::vector<Vec3>& points, bool big) {
   for (const Vec3& p : points) {
     bytes += raw(char(9)) + raw(p.x(), big) + raw(float(p.y()), big) + raw(float(p.z()), big);
   }
+  bytes += raw(char(2)) + raw(std::int32_t(0), big) + raw(std::int32_t(1), big);
   return bytes;
 }
 
