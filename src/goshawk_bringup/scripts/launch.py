@@ -220,8 +220,6 @@ def launch(options, voice):
                   stages=names)
         return DONE
     names = stage_names.StageNames(domain, nodes)
-    if options["stop_with_parent"]:
-        supervision.stop_with_parent(options["parent"])
     os.makedirs(options["log_dir"], exist_ok=True)
     said = place(plan, options)
     if said:
@@ -234,6 +232,8 @@ def launch(options, voice):
 
     signal.signal(signal.SIGINT, stop)
     signal.signal(signal.SIGTERM, stop)
+    if options["stop_with_parent"]:
+        supervision.stop_with_parent(options["parent"])
     return running.run(programs, names.descriptors())
 
 
