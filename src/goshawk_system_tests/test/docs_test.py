@@ -46,7 +46,7 @@ def command_lines(path):
 
 class Pages(SystemTest):
     def test_every_error_code_has_a_row_in_troubleshooting(self):
-        names = re.findall(r'Named\{ErrorCode::\w+, "(\w+)"\}',
+        names = re.findall(r'CodeName\{ErrorCode::\w+, "(\w+)"\}',
                            (SOURCE / "src/goshawk_core/src/error.cpp").read_text())
         self.assertGreater(len(names), 20)
         rows = [line.split("|")[1] for line in

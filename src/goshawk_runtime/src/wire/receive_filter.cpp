@@ -16,6 +16,9 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <map>
+#include <memory>
+#include <mutex>
 #include <vector>
 
 #include "datagram_check.hpp"
@@ -53,10 +56,24 @@ class FilteringTransport : public transport::ChainingTransport {
                      FilterOptions options)
       : ChainingTransport(low), loopback_only_(loopback_only), options_(std::move(options)) {}
 
+  // Its threads end before what they call.
+  ~FilteringTransport() override { low_level_transport_.reset(); }
+
   transport::TransportDescriptorInterface* get_configuration() override {
     return low_level_transport_->get_configuration();
   }
   void shutdown() override { low_level_transport_->shutdown(); }
+
+  // The base class remembers a port that could not be opened, because another process has it, and
+  // calls it open when it is asked for again: a reader with a port of its own then hears nothing.
+  bool OpenInputChannel(const rtps::Locator_t& local, transport::TransportReceiverInterface* next,
+                        std::uint32_t max_size) override {
+    auto receiver = std::make_unique<Receiver>(*this, *next);
+    if (!low_level_transport_->OpenInputChannel(local, receiver.get(), max_size)) return false;
+    const std::lock_guard lock(mutex_);
+    receivers_[local] = std::move(receiver);
+    return true;
+  }
 
   bool send(rtps::SenderResource* low, const rtps::octet* buffer, std::uint32_t size,
             rtps::LocatorsIterator* begin, rtps::LocatorsIterator* end,
@@ -80,6 +97,21 @@ class FilteringTransport : public transport::ChainingTransport {
   }
 
  private:
+  /// What the transport below calls for one port.
+  class Receiver : public transport::TransportReceiverInterface {
+   public:
+    Receiver(FilteringTransport& filter, transport::TransportReceiverInterface& next)
+        : filter_(filter), next_(next) {}
+    void OnDataReceived(const rtps::octet* data, std::uint32_t size, const rtps::Locator_t& local,
+                        const rtps::Locator_t& remote) override {
+      filter_.receive(&next_, data, size, local, remote);
+    }
+
+   private:
+    FilteringTransport& filter_;
+    transport::TransportReceiverInterface& next_;
+  };
+
   std::string_view fault_of_sender(std::span<const std::byte> datagram,
                                    const rtps::Locator_t& remote) {
     constexpr std::array<rtps::octet, 4> kLoopbackAddress{127, 0, 0, 1};
@@ -95,6 +127,8 @@ class FilteringTransport : public transport::ChainingTransport {
   bool loopback_only_;
   FilterOptions options_;
   SenderTable senders_;
+  std::mutex mutex_;
+  std::map<rtps::Locator_t, std::unique_ptr<Receiver>> receivers_;
 };
 
 bool listens_on_loopback_only(const transport::UDPv4TransportDescriptor& udp) {
