@@ -103,7 +103,7 @@ class Commands(SystemTest):
             line += " --port 0 --no-open"
             line += f" --bridge ws://127.0.0.1:{harness.free_port()}" if "--live" in line else ""
         if "launch flight_view" in line:
-            line += " -p viewer_bridge:port:=0"
+            line += " --ros-args -p viewer_bridge:port:=0"
         return line
 
     def start_line(self, line, exports):
