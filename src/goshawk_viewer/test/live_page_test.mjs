@@ -9,7 +9,7 @@ const {page, complaints} = await open(browser, url, {size: {width: 1000, height:
 
 check(await until(page, () => window.goshawk && goshawk.view.maps.obstacles &&
                               goshawk.view.maps.grown && goshawk.pose), 'map and vehicle come');
-check(await page.evaluate(() => goshawk.view.pixels().colors) > 500, 'the map is drawn');
+check(await until(page, () => goshawk.view.pixels().colors > 500), 'the map is drawn');
 // Every state that comes, however late the page gets to show it.
 await page.evaluate(() => {
   const take = goshawk.onNavigator;
