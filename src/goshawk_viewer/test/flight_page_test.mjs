@@ -76,7 +76,7 @@ async function controls(page) {
   await page.keyboard.press('d');
   check(Math.hypot(...(await eye()).map((c, k) => c - before[k])) > 0.1, 'and turn the picture');
   await page.evaluate(() => document.getElementById('theme').click());
-  check(await page.evaluate(() => goshawk.view.pixels().colors) > 1000, 'a light page as well');
+  check(await until(page, () => goshawk.view.pixels().colors > 1000), 'a light page as well');
 }
 
 // The first view shows all of the flight, beside the panel or below its header.

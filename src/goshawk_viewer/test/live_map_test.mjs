@@ -11,7 +11,7 @@ const look = () => page.evaluate(() => {
 
 check(await until(page, () => window.goshawk && goshawk.view.maps.grown), 'the map comes');
 await page.evaluate(() => document.getElementById('layer-grown').click());
-check(await page.evaluate(() => goshawk.view.pixels().colors) > 100, 'it is drawn');
+check(await until(page, () => goshawk.view.pixels().colors > 100), 'it is drawn');
 const before = await look();
 await page.evaluate(() => { goshawk.mapUpdates = 0; });
 check(await until(page, () => goshawk.mapUpdates > 1), 'scans change bricks of it');
