@@ -89,7 +89,7 @@ class Recording(RecordingCase):
                  (["record", "no such topic"], 2, "no such topic"),
                  (["record", "--duration", "-1"], 2, "duration"),
                  (["replay", "/nonexistent.mcap"], 1, "/nonexistent.mcap"),
-                 (["replay", "/etc/passwd"], 1, "no MCAP"),
+                 (["replay", "/etc/passwd"], 1, "not an MCAP"),
                  (["replay", "x.mcap", "--rate", "0"], 2, "rate")]
         for words, status, word in cases:
             with self.subTest(words=words):

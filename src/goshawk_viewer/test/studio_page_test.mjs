@@ -25,7 +25,7 @@ check(await there('Send this goal'), 'with a panel that sends a goal');
 const {places} = await page.evaluate(async () => (await fetch('show.json')).json());
 check(places.length > 3, `and a picture of where it flies: ${places.length} places`);
 if (kind === 'recording') {
-  check(await there('"arrived"'), 'a jump to the end finds that it arrived');
+  check(await there('flown_request_id'), 'a jump to the end shows the navigator');
   check(parts.length > 0, `the recording is asked for in parts: ${parts.length}`);
 } else {
   check(await there('request_id'), 'live messages come');
