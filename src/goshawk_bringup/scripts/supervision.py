@@ -1,4 +1,4 @@
-"""Debian's supervisord as the parent of all stages: its configuration, what it says, its end."""
+"""Runs Debian's supervisord as the parent of all stages: configuration, events, shutdown."""
 
 import ctypes
 import os

@@ -88,7 +88,7 @@ class PlantComponent : public runtime::Component {
     if (auto status = vehicle_.advance(dt_s); !status)
       throw std::logic_error(status.error().message);
     const auto measured = vehicle_.measure();
-    // The vehicle counts its own time: a measurement is as old here as it is there.
+    // The vehicle has its own clock; only the age of a measurement carries over.
     const std::int64_t stamp_ns = node_.now_ns();
     topics_.publish_odometry(measured.state, stamp_ns - (vehicle_.time_ns() - measured.time_ns));
     topics_.publish_truth(vehicle_.state(), stamp_ns);
