@@ -213,6 +213,8 @@ def launch(options, voice):
     content = launch_file.read(options["file"])
     domain = domain_of(content)
     plan = launch_file.Plan(content, options["file"], options["prefix"], options["ros_args"])
+    if options["secure"]:
+        plan.secure = os.path.abspath(options["secure"])
     nodes = [node for program in plan.programs() for node in program.nodes]
     if options["check"]:
         names = [program.name for program in plan.programs()]

@@ -21,6 +21,7 @@ StageReporter::StageReporter(runtime::Node& node, StageRole role, std::string im
   report_.stage(conversions::to_msg(role));
   report_.node(node.full_name());
   report_.implementation(std::move(implementation));
+  node.on_second_writer([this](const Error& error) { fault(error); });
 }
 
 void StageReporter::set_implementation(std::string implementation) {

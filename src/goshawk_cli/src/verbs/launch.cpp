@@ -17,6 +17,7 @@ struct LaunchOptions {
   std::string map;
   std::optional<Vec3> start_map;
   std::string log_dir;
+  std::string secure;
   bool list = false;
   bool check = false;
   bool stop_with_parent = false;
@@ -79,6 +80,7 @@ int run_launch(const LaunchOptions& o, const Console& console) {
                         {"map", o.map},
                         {"start", start},
                         {"log_dir", log_dir},
+                        {"secure", o.secure},
                         {"check", o.check},
                         {"stop_with_parent", o.stop_with_parent},
                         {"parent", o.parent},
@@ -102,6 +104,9 @@ void add_launch(Program& program) {
             "[m] where the simulated vehicle begins (default with --map: a free place)");
   verb->add_option("--log-dir", o->log_dir,
                    "folder for the logs (default: a new one in ~/.local/state/goshawk/log)");
+  verb->add_option("--secure", o->secure,
+                   "folder of goshawk secure init: fly with DDS Security, each stage with its own "
+                   "certificate");
   verb->add_flag("--list", o->list, "only print the names of the installed launch files");
   verb->add_flag("--check", o->check, "only check the launch file");
   verb->add_flag("--stop-with-parent", o->stop_with_parent,
