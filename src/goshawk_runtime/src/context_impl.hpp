@@ -33,6 +33,8 @@ class DiscoveryListener : public dds::DomainParticipantListener {
 
   /// Nodes, process and GUID of a participant, for a sentence.
   std::string describe(const Participant& participant) const;
+  /// @return whether it says that it runs nodes, as stages do
+  bool has_nodes(const Participant& participant) const;
   /// @return whether it left without a word, which a stopped process does, at most within_s ago
   bool fell_silent(const Participant& participant, double within_s) const;
 

@@ -117,6 +117,12 @@ bool DiscoveryListener::fell_silent(const Participant& participant, double withi
   return since.count() < within_s;
 }
 
+bool DiscoveryListener::has_nodes(const Participant& participant) const {
+  const std::lock_guard lock(mutex_);
+  const auto at = participants_.find(text(prefix_of(participant)));
+  return at != participants_.end() && !at->second.nodes.empty();
+}
+
 std::string DiscoveryListener::describe(const Participant& participant) const {
   const std::lock_guard lock(mutex_);
   const std::string guid = text(prefix_of(participant));

@@ -31,15 +31,19 @@ bool OneWriter::was_refused(const Participant& writer) const {
   return std::ranges::find(refused_, writer) != refused_.end();
 }
 
-// The first time: this process itself, else the one that was found first and lives.
+// The first time: this process itself, else of those that live and rank highest the first.
 void OneWriter::choose(const Participant& speaker, const IsAlive& is_alive) {
   if (is_matched(own_)) {
     chosen_ = own_;
     return;
   }
-  const auto first =
-      std::ranges::find_if(matched_, [&](const auto& entry) { return is_alive(entry.first); });
-  chosen_ = first == matched_.end() ? speaker : first->first;
+  int best = -1;
+  chosen_ = speaker;
+  for (const auto& [writer, count] : matched_) {
+    if (rank(writer) <= best || !is_alive(writer)) continue;
+    best = rank(writer);
+    chosen_ = writer;
+  }
 }
 
 bool OneWriter::admits(const Participant& writer, std::int64_t now_ns, const IsAlive& is_alive) {
@@ -48,14 +52,15 @@ bool OneWriter::admits(const Participant& writer, std::int64_t now_ns, const IsA
     died_ns_ = 0;
     return true;
   }
-  if (is_alive(*chosen_)) {
+  const bool outranks = *chosen_ != own_ && rank(writer) > rank(*chosen_);
+  if (!outranks && is_alive(*chosen_)) {
     died_ns_ = 0;
     if (!was_refused(writer)) refused_.push_back(writer);
     if (refused_.size() > kMostRefused) refused_.pop_front();
     return false;
   }
   if (died_ns_ == 0) died_ns_ = now_ns;
-  if (was_refused(writer) && now_ns - died_ns_ < kGrace_ns) return false;
+  if (!outranks && was_refused(writer) && now_ns - died_ns_ < kGrace_ns) return false;
   chosen_ = writer;
   refused_.clear();
   died_ns_ = 0;

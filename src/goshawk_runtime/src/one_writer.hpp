@@ -20,11 +20,13 @@ namespace goshawk::runtime {
 class OneWriter {
  public:
   using IsAlive = std::function<bool(const Participant&)>;
+  /// How much a process looks like a stage. One of a higher rank replaces one of a lower.
+  using Rank = std::function<int(const Participant&)>;
 
   static constexpr std::int64_t kGrace_ns = 2'000'000'000;
 
   /// @param own the process that this one is: chosen before all others if it writes itself
-  explicit OneWriter(const Participant& own) : own_(own) {}
+  explicit OneWriter(const Participant& own, Rank rank = {}) : own_(own), rank_(std::move(rank)) {}
 
   /// A writer of the process was matched, or no longer is.
   void found(const Participant& writer);
@@ -41,8 +43,10 @@ class OneWriter {
  private:
   void choose(const Participant& speaker, const IsAlive& is_alive);
   bool was_refused(const Participant& writer) const;
+  int rank(const Participant& writer) const { return rank_ ? rank_(writer) : 0; }
 
   Participant own_;
+  Rank rank_;
   std::vector<std::pair<Participant, int>> matched_;  // writers of each, in order of discovery
   std::optional<Participant> chosen_;
   std::deque<Participant> refused_;  // beside the chosen one, the newest

@@ -34,7 +34,8 @@ WriterGuard::WriterGuard(Context::Impl& context, const OnRefused& on_refused)
     : context_(context),
       on_refused_(on_refused),
       own_(participant_of(context.participant->guid().guidPrefix)),
-      writers_(own_) {}
+      rank_([&context](const Participant& p) { return context.listener.has_nodes(p) ? 1 : 0; }),
+      writers_(own_, rank_) {}
 
 void WriterGuard::found(const Participant& writer) {
   const std::lock_guard lock(mutex_);
@@ -52,7 +53,7 @@ bool WriterGuard::is_matched(const Participant& writer) {
 }
 
 OneWriter& WriterGuard::chooser(std::uint8_t part) {
-  return part == 0 ? writers_ : parts_.try_emplace(part, own_).first->second;
+  return part == 0 ? writers_ : parts_.try_emplace(part, own_, rank_).first->second;
 }
 
 // On loopback a process lives as long as its port is taken, whether it is heard or not. Elsewhere

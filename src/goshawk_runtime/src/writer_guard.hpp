@@ -47,6 +47,7 @@ class WriterGuard {
   Context::Impl& context_;
   const OnRefused& on_refused_;
   Participant own_;
+  OneWriter::Rank rank_;
   std::mutex mutex_;
   OneWriter writers_;  // also knows who is matched
   std::map<std::uint8_t, OneWriter> parts_;

@@ -104,6 +104,19 @@ TEST_F(OneWriterTest, CountsTheGraceFromEachDeath) {
   EXPECT_FALSE(admits(stranger_));
 }
 
+TEST_F(OneWriterTest, IsAStageRatherThanWhoDoesNotClaimToBeOne) {
+  OneWriter one(own_, [&](const Participant& p) { return p == stage_ || p == again_ ? 1 : 0; });
+  const auto heard = [&](const Participant& p) {
+    return one.admits(p, now_ns_, [&](const auto& w) { return !dead_.contains(w); });
+  };
+  one.found(stranger_);
+  EXPECT_TRUE(heard(stranger_));
+  one.found(stage_);
+  EXPECT_TRUE(heard(stage_)) << "a stage that is found later replaces it";
+  EXPECT_FALSE(heard(stranger_));
+  EXPECT_FALSE(heard(again_)) << "one of the same rank does not";
+}
+
 TEST_F(OneWriterTest, ForgetsAParticipantWithItsLastWriter) {
   one_.found(stage_);
   one_.found(stage_);

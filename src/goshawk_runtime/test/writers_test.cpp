@@ -154,10 +154,17 @@ TEST_F(HeardFromOne, OnlyTheNewestMessageOfADepthOfOneIsDelivered) {
   listen(Qos::best_effort());
   const Speaker stage("stage", Qos::best_effort(100));
   ASSERT_TRUE(meets(stage));
-  for (int i = 0; i < 20; ++i) stage.say(std::to_string(i));
-  // The reader's node has not run meanwhile.
-  ASSERT_TRUE(hears("19"));
-  EXPECT_LT(heard_.size(), 10u);
+  // Best effort: until the reader has matched as well, messages are lost.
+  ASSERT_TRUE(spin_until(reader_, [&] { return stage.say("first"), !heard_.empty(); }));
+  for (int i = 0; i < 20; ++i) stage.say(std::to_string(i));  // the reader's node does not run
+  std::size_t burst = 0;
+  ASSERT_TRUE(spin_until(reader_, [&] {
+    burst = std::size_t(std::ranges::count_if(heard_, [](auto& m) { return m != "first"; }));
+    if (heard_.back() == "19") return true;
+    stage.say("19");
+    return false;
+  }));
+  EXPECT_LT(burst, 10u);
 }
 
 TEST_F(HeardFromOne, OneWriterSpeaksForAllTopicsOfAGroup) {

@@ -60,7 +60,7 @@ msg::BezierTrajectory straight(const msg::PlanRequest& request, const Vec3& from
   m.implementation("impostor");
   m.map_version(1);
   m.pieces(conversions::to_msg(trajectory));
-  m.polytopes(conversions::to_msg({anywhere(from, to)}));
+  m.polytopes(conversions::to_msg(std::vector{anywhere(from, to)}));
   return m;
 }
 
@@ -83,7 +83,7 @@ msg::Corridor wide_corridor(const msg::PlanRequest& request) {
   m.implementation("impostor");
   m.map_version(1);
   m.waypoints({conversions::to_point(from), conversions::to_point(to)});
-  m.polytopes(conversions::to_msg({anywhere(from, to)}));
+  m.polytopes(conversions::to_msg(std::vector{anywhere(from, to)}));
   return m;
 }
 

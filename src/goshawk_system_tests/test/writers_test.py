@@ -69,7 +69,7 @@ class SecondWriters(StackTest):
         self.fly()
 
     def test_3_a_stage_that_is_started_again_is_heard_at_once(self):
-        for stage in ("simulator", "tracker", "navigator", "map_server", "path_search"):
+        for stage in ("tracker", "navigator", "map_server"):
             with self.subTest(stage):
                 before = self.stack.launch.pids()[stage]
                 os.kill(before, signal.SIGKILL)
