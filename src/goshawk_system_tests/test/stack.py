@@ -13,10 +13,10 @@ from harness import GOSHAWK, STAGES, Publisher, Sandbox, SystemTest, node_of, un
 class Launch:
     """`goshawk launch FILE` with JSON events, and the logs of what it starts."""
 
-    def __init__(self, sandbox, file, *ros_args, env=None):
+    def __init__(self, sandbox, file, *ros_args, env=None, options=()):
         self.sandbox = sandbox
         self.logs = sandbox.folder / f"logs-{uuid.uuid4().hex[:6]}"
-        command = [GOSHAWK, "launch", file, "--json", "--log-dir", self.logs]
+        command = [GOSHAWK, "launch", file, "--json", "--log-dir", self.logs, *options]
         if ros_args:
             command += ["--ros-args", *ros_args]
         self.process = sandbox.start(*command, env=env)
