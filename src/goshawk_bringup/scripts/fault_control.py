@@ -6,7 +6,7 @@ import struct
 
 # wall_offset_ns, receive_loss_ppm, send_loss_ppm, seed, drawn, lost
 LAYOUT = struct.Struct("=qIIQQQ")
-WALL_OFFSET_AT, RECEIVE_LOSS_AT, SEND_LOSS_AT, SEED_AT, LOST_AT = 0, 8, 12, 16, 32
+WALL_OFFSET_AT, LOSS_AT, LOST_AT = 0, 8, 32
 
 
 class FaultControl:
@@ -24,8 +24,7 @@ class FaultControl:
 
     def lose(self, received=0.0, sent=0.0):
         """From now on, of the datagrams received and sent these parts."""
-        struct.pack_into("=II", self.memory, RECEIVE_LOSS_AT, round(received * 1e6),
-                         round(sent * 1e6))
+        struct.pack_into("=II", self.memory, LOSS_AT, round(received * 1e6), round(sent * 1e6))
 
     def lost(self):
         return struct.unpack_from("=Q", self.memory, LOST_AT)[0]

@@ -51,7 +51,7 @@ class Events:
 class FaultyFlight:
     """What a fault acts on: the stages' processes, their shims, the map that they load."""
 
-    def __init__(self, prefix, folder, true_world, free_world, env):
+    def __init__(self, prefix, folder, true_world, free_world, env, seed):
         self.prefix, self.folder = pathlib.Path(prefix), pathlib.Path(folder)
         self.true_world, self.free_world = true_world, free_world
         self.world = self.folder / "loaded.bt"
@@ -59,7 +59,7 @@ class FaultyFlight:
         self.env, self.domain = env, None
         switches = self.folder / "faults"
         switches.mkdir(exist_ok=True)
-        self.controls = {s: fault_control.FaultControl(switches, s)
+        self.controls = {s: fault_control.FaultControl(switches, s, seed)
                          for s in [*faults.STAGES, faults.PLANT]}
         self.flight_env = {**env, **fault_control.environment(prefix, switches)}
 

@@ -1,5 +1,5 @@
-"""The flown track of a flight with faults: its times as the monotonic clock saw them, although the
-vehicle's clock was stepped and its process stopped; and how fast it was."""
+"""The flown track of a flight with faults, in which the vehicle's process may have been stopped: its
+times without these gaps; and how fast it was."""
 
 import bisect
 import csv
@@ -14,17 +14,17 @@ LONGEST_STEP_S = 0.1  # the plant's world goes on by so much at the most after a
 class Track:
     """Rows of flown.csv. `times` is their table's time axis without the gaps that faults explain."""
 
-    def __init__(self, path, plant_faults=0):
-        """@param plant_faults how often the vehicle's process was stopped or its clock was set"""
+    def __init__(self, path, stalls=0):
+        """@param stalls how often the vehicle's process was stopped"""
         with open(path, encoding="utf-8", newline="") as file:
             self.rows = list(csv.DictReader(file))
         self.stamps = [float(r["t_s"]) for r in self.rows]
         self.points = [tuple(float(r[k]) for k in ("x_m", "y_m", "z_m")) for r in self.rows]
-        self.times = self.without_gaps(plant_faults)
+        self.times = self.without_gaps(stalls)
 
-    def without_gaps(self, plant_faults):
-        """A vehicle that did not move across a gap, after its process was stopped or its clock was
-        set, did not fly unseen. Any other gap stays, and its track is not judged."""
+    def without_gaps(self, stalls):
+        """A vehicle that did not move across a gap, because its process was stopped, did not fly
+        unseen. Any other gap stays, and its track is not judged."""
         times, shift_s = [], 0.0
         for k, stamp_s in enumerate(self.stamps):
             if k > 0:
@@ -32,8 +32,8 @@ class Track:
                 speed = max(self.speed(k - 1), self.speed(k))
                 explained = math.dist(self.points[k - 1], self.points[k]) <= (
                     STILL_M + speed * LONGEST_STEP_S)
-                if not 0.0 <= gap_s <= GAP_S and explained and plant_faults > 0:
-                    plant_faults -= 1
+                if gap_s > GAP_S and explained and stalls > 0:
+                    stalls -= 1
                     shift_s += STEP_S - gap_s
             times.append(stamp_s + shift_s)
         return times

@@ -145,7 +145,7 @@ class FaultyMission:
         free = self.folder / "free.bt"
         self.flyer.call("world", free, "--density", "0", "--size", options.size)
         flight = faulty_flight.FaultyFlight(options.prefix, self.folder, self.world, free,
-                                            self.flyer.env)
+                                            self.flyer.env, self.mission.fault_seed)
         injector = faulty_flight.Injector(
             flight, faults.drawn(options.faults, self.mission.fault_seed))
 
@@ -167,8 +167,7 @@ class FaultyMission:
         if not path.exists() or not begin:
             return {"verdict": "not flown"}
         stalls = sum(r["kind"] == "stall" and faults.PLANT in r["targets"] for r in self.rows)
-        steps = sum(r["kind"] == "clock" and faults.PLANT in r["targets"] for r in self.rows)
-        track = Track(path, stalls + 2 * steps)
+        track = Track(path, stalls)
         table = self.folder / "judged.csv"
         track.write(table)
         status, judged = self.flyer.call("check", table, "--map", self.world)

@@ -59,7 +59,10 @@ FlightRecorder::FlightRecorder(Node& node, const std::string& events_file)
   node.subscribe<nav_msgs::msg::Odometry>(
       "odom_true", Qos::best_effort(kWholeTrack),
       [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) {
-        if (!std::exchange(knows_truth_, true)) flown_.clear();
+        if (!std::exchange(knows_truth_, true)) {
+          flown_.clear();
+          times_ = {};
+        }
         on_odometry(m);
       });
   node.subscribe<msg::TrackingState>("tracking_state", Qos::best_effort(100),
@@ -73,9 +76,10 @@ FlightRecorder::FlightRecorder(Node& node, const std::string& events_file)
 
 void FlightRecorder::on_odometry(const nav_msgs::msg::Odometry& m) {
   const auto state = conversions::from_msg(m);
-  // What follows counts from this stamp.
-  if (state && flown_.empty()) tell("track", {{"stamp_ns", conversions::to_ns(m.header().stamp())}});
-  if (state) flown_.push_back({conversions::to_ns(m.header().stamp()), *state});
+  if (!state) return;
+  if (flown_.empty()) tell("track", Json::object());  // its times count from here
+  const std::int64_t stamp_ns = conversions::to_ns(m.header().stamp());
+  flown_.push_back({times_.time_ns(stamp_ns, node_.monotonic_ns()), *state});
 }
 
 void FlightRecorder::on_commit(const msg::CommittedTrajectory& m) {

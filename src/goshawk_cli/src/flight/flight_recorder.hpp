@@ -6,6 +6,7 @@
 #include <set>
 
 #include "flight/flight_events.hpp"
+#include "flight/track_times.hpp"
 #include "goshawk/conversions/plan.hpp"
 #include "goshawk/core/stage_role.hpp"
 #include "goshawk/core/vehicle.hpp"
@@ -16,7 +17,7 @@
 namespace goshawk::cli {
 
 struct FlownState {
-  std::int64_t stamp_ns = 0;
+  std::int64_t stamp_ns = 0;  // by TrackTimes
   RigidBodyState state;
 };
 
@@ -68,6 +69,7 @@ class FlightRecorder {
   std::optional<goshawk_msgs::msg::NavigatorState> navigator_;
   std::vector<FlownState> flown_;
   bool knows_truth_ = false;
+  TrackTimes times_;
   std::vector<TrackedError> errors_;
   std::vector<CommittedTrajectory> committed_;
   std::map<std::uint64_t, RequestRecord> requests_;
