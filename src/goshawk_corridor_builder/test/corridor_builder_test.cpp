@@ -213,7 +213,7 @@ TEST_P(BothGenerators, SaysWhereASegmentEntersSpaceThatWasNeverMeasured) {
   VoxelGrid grid = world_with_wall();
   grid.known = BitGrid(grid.geometry.size, false, true);
   const std::vector<Vec3> path{{0.5, 0.5, 0.5}, {1.5, 0.5, 0.5}, {3.0, 0.5, 0.5}};
-  expect_error(builder_.build(grid, path), ErrorCode::segment_blocked, "an obstacle (grown");
+  expect_error(builder_.build(grid, path), ErrorCode::segment_blocked, "an obstacle (inflated");
   for (int y = 0; y < 10; ++y) {
     for (int z = 0; z < 5; ++z) grid.known.set({10, y, z}, false);
   }
