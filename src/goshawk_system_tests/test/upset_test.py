@@ -80,8 +80,8 @@ class UpsetFlight(LegsCase):
                 self.stall([stage], math.exp(self.draw.uniform(math.log(0.05), 0.0)))
         self.upset(act)
 
-    def test_3_the_navigator_stops_for_ten_seconds(self):
-        self.upset(lambda: self.stall(["navigator"], 10.0), "tracker: stage_silent")
+    def test_3_the_navigator_stops_for_longer_than_it_may(self):
+        self.upset(lambda: self.stall(["navigator"], 4.0), "tracker: stage_silent")
 
     def test_4_all_stages_stop_at_once(self):
         self.upset(lambda: self.stall(SOFTWARE, self.draw.uniform(0.5, 3.0)),
