@@ -156,6 +156,14 @@ std::int64_t Node::monotonic_ns() const {
   return impl_->time.on ? impl_->time.now_ns : clock_->monotonic_ns();
 }
 
+std::uint64_t Node::refused_datagrams() const {
+  return impl_->context.refusals->count();
+}
+
+std::string Node::last_refusal() const {
+  return impl_->context.refusals->last();
+}
+
 std::string Node::full_name() const {
   return (args_.node_namespace == "/" ? "" : args_.node_namespace) + "/" + name_;
 }

@@ -25,12 +25,12 @@ bool may_be_megabytes(std::string_view wire_name) {
          wire_name.ends_with("::PointCloud2_");
 }
 
-MessageInfo message_info(const Node& node, const dds::SampleInfo& info) {
-  return {node.now_ns(), info.source_timestamp.to_ns(),
-          participant_of(info.sample_identity.writer_guid().guidPrefix)};
-}
-
 }  // namespace
+
+std::int64_t Node::Impl::waited_ns(const dds::SampleInfo& info) const {
+  if (time.on) return 0;  // Fast DDS stamps with the system's clock
+  return std::max<std::int64_t>(0, SystemClock().now_ns() - info.reception_timestamp.to_ns());
+}
 
 // @return the quality of service of its reader
 Qos Node::Impl::guard(Subscription& s, Qos qos, const MessageType& type, Writers writers) {
@@ -129,7 +129,8 @@ int Node::Impl::take_some(const Node& node, Subscription& s) {
 }
 
 void Node::Impl::hear(const Node& node, Subscription& s, const dds::SampleInfo& info) {
-  const MessageInfo told = message_info(node, info);
+  const MessageInfo told{node.now_ns(), waited_ns(info), info.source_timestamp.to_ns(),
+                         participant_of(info.sample_identity.writer_guid().guidPrefix)};
   if (s.guard == nullptr) return call(node, s.topic, s.callback, s.object, told);
   const std::uint8_t part = s.part ? s.part(s.object) : 0;
   if ((!s.part || part != 0) && !s.guard->admits(told.writer, part, s.topic)) {

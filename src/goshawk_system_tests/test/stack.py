@@ -61,14 +61,14 @@ class States:
 class Stack:
     """Every stage launched in a world of its own, with the topics that tell what happens."""
 
-    def __init__(self, sandbox, file="flight", ros_args=(), options=()):
+    def __init__(self, sandbox, file="flight", ros_args=(), env=None, options=()):
         self.sandbox = sandbox
         self.world = sandbox.folder / "world.bt"
         made = sandbox.goshawk("world", self.world, "--json")
         if made.status != 0:
             raise AssertionError(f"the world could not be made: {made}")
         self.launch = Launch(sandbox, file, "-p", f"map_server:map_file:={self.world}", *ros_args,
-                             options=options)
+                             env=env, options=options)
         self.reports = self.echo("stage_report")
         self.states = States(self.echo("navigator_state"))
         self.odom = self.echo("odom", "--no-arr")
@@ -157,7 +157,7 @@ class StackTest(unittest.TestCase):
     def setUpClass(cls):
         cls.sandbox = Sandbox()
         try:
-            cls.stack = Stack(cls.sandbox, cls.launch_file, cls.ros_args)
+            cls.stack = Stack(cls.sandbox, cls.launch_file, cls.ros_args, cls.launch_env())
             cls.stack.wait_ready()
         except BaseException:
             cls.sandbox.close()
@@ -168,6 +168,11 @@ class StackTest(unittest.TestCase):
         left = cls.sandbox.close()
         if left:
             raise AssertionError(f"processes outlived the test: {left}")
+
+    @classmethod
+    def launch_env(cls):
+        """More variables of the stages' environment."""
+        return {}
 
     json_object = SystemTest.json_object
     assert_civil = SystemTest.assert_civil

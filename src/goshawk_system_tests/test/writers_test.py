@@ -12,9 +12,10 @@ from stack import StackTest
 PLACES = [(3.0, 8.0, 2.0), (3.0, 0.0, 1.0)]
 # topic: type, what its writer is called, who must refuse a second one
 GUARDED = {
-    "map/voxels": ("goshawk_msgs/msg/VoxelGrid", "map_server", {"path_search", "corridor_builder"}),
+    "map/voxels": ("goshawk_msgs/msg/VoxelGrid", "map_server",
+                   {"path_search", "corridor_builder", "navigator"}),
     "map/voxels/updates": ("goshawk_msgs/msg/VoxelGridUpdate", "map_server",
-                           {"path_search", "corridor_builder"}),
+                           {"path_search", "corridor_builder", "navigator"}),
     "octomap_binary": ("octomap_msgs/msg/Octomap", "map_server", {"flight_check"}),
     "plan_request": ("goshawk_msgs/msg/PlanRequest", "navigator",
                      {"path_search", "corridor_builder", "trajectory_optimizer"}),
@@ -27,6 +28,7 @@ GUARDED = {
     "odom": ("nav_msgs/msg/Odometry", "simulator",
              {"tracker", "navigator", "map_server", "flight_check"}),
     "command": ("goshawk_msgs/msg/AttitudeSetpoint", "tracker", {"simulator"}),
+    "tracking_state": ("goshawk_msgs/msg/TrackingState", "tracker", {"navigator"}),
     "vehicle_status": ("goshawk_msgs/msg/VehicleStatus", "simulator", {"flight_check"}),
     "stage_report": ("goshawk_msgs/msg/StageReport", "path_search", {"navigator"}),
 }
