@@ -31,20 +31,26 @@ Box box_of(const Config& c) {
 
 LiveMap make_map(const Config& config, Node& node) {
   auto map = [&]() -> Result<LiveMap> {
+    const auto options = live_options(config);
+    if (!options) return options.error();
+    if (config.follow_vehicle && !config.use_box) {
+      return fail(ErrorCode::invalid_parameter,
+                  "follow_vehicle needs use_box: the box is the window that moves");
+    }
     if (config.map_file.empty()) {
       if (!config.use_box) {
         return fail(ErrorCode::invalid_parameter,
                     "map_server has neither a map_file nor use_box: name a map, or the box that "
                     "begins as unknown space");
       }
-      return LiveMap::unknown_space(box_of(config), config.resolution_m, growth(config),
-                                    config.max_voxels);
+      return LiveMap::unknown_space(box_of(config), config.resolution_m, growth(config), *options);
     }
-    auto source = load_map(config.map_file, load_options(config));
+    auto loading = load_options(config);
+    if (config.follow_vehicle) loading.box = {};  // what lies outside is kept beside the window
+    const auto source = load_map(config.map_file, loading);
     if (!source) return source.error();
     for (const std::string& note : source->notes) node.log().warn("{}: {}", config.map_file, note);
-    return LiveMap::from_source(*std::move(source), voxelize_options(config), growth(config),
-                                std::int64_t{config.max_tree_mb} * 1'000'000);
+    return LiveMap::from_source(*source, voxelize_options(config), growth(config), *options);
   }();
   if (!map) throw StartupFault(map.error());
   return *std::move(map);
@@ -60,7 +66,7 @@ class MapServerComponent : public Component {
           return success();
         })),
         map_(make_map(config_, node)),
-        reporter_(node, StageRole::map_server, "octomap"),
+        reporter_(node, StageRole::map_server, "bricks"),
         voxels_(node.advertise<msg::VoxelGrid>("map/voxels", Qos::latched())),
         updates_(
             node.advertise<msg::VoxelGridUpdate>("map/voxels/updates", Qos::reliable_last(50))),
@@ -77,10 +83,10 @@ class MapServerComponent : public Component {
     });
     publish_whole();
     malloc_trim(0);  // what loading and publishing took for a moment; glibc may keep it for ever
-    const auto& grid = map_.grid();
+    const GridGeometry geometry = map_.geometry();
     reporter_.ready(fmt::format("serves {} voxels of {:.3g} m, obstacles inflated by {:.3g} m",
-                                to_text(grid.geometry.size), grid.geometry.resolution_m,
-                                grid.inflation_m));
+                                to_text(geometry.size), geometry.resolution_m,
+                                map_.growth().inflation_m));
   }
 
  private:
@@ -100,7 +106,7 @@ class MapServerComponent : public Component {
     m.header(conversions::make_header(node_.now_ns()));
     m.binary(true);
     m.id("OcTree");
-    m.resolution(map_.grid().geometry.resolution_m);
+    m.resolution(map_.geometry().resolution_m);
     m.data().assign(bytes->begin(), bytes->end());
     reporter_.send(octomap_, m);
   }
@@ -108,10 +114,16 @@ class MapServerComponent : public Component {
   void on_cloud(const sensor_msgs::msg::PointCloud2& m) {
     auto points = points_in_map(m);
     if (!points) return reporter_.fault(points.error());
-    const Vec3 origin = vehicle_ ? vehicle_->position_map : Vec3::Zero();
-    auto result = map_.insert_scan(*points, origin, config_.max_range_m);
-    if (!result) return reporter_.fault(result.error());
-    publish_update(result->update);
+    const Vec3 origin = vehicle_->position_map;
+    const Scan scan{.points_map = *points,
+                    .origins_map = {&origin, 1},
+                    .max_range_m = config_.max_range_m,
+                    .body_path_map = {&origin, 1},
+                    .body_radius_m = config_.body_radius_m};
+    if (auto status = map_.insert_scan(scan, result_); !status) {
+      return reporter_.fault(status.error());
+    }
+    publish_update(result_.update);
     changed_ = true;
   }
 
@@ -143,6 +155,7 @@ class MapServerComponent : public Component {
   Node& node_;
   Config config_;
   LiveMap map_;
+  ScanResult result_;  // its memory is used again
   StageReporter reporter_;
   Publisher<msg::VoxelGrid> voxels_;
   Publisher<msg::VoxelGridUpdate> updates_;
