@@ -53,7 +53,7 @@ std::vector<Finding> check_topics(const std::vector<runtime::ParticipantInfo>& p
 /// @param udp_table the content of /proc/net/udp
 std::vector<int> domains_in_use(const std::string& udp_table);
 
-/// Sockets in use: port to inode, of /proc/net/udp, or of /proc/net/tcp where it listens.
+/// Sockets in use: port to inode, of /proc/net/udp, or of /proc/net/tcp if it listens.
 std::map<int, long> ports_in_use(const std::string& table);
 
 /// UDP ports of the domain that are held by a program that is not a participant: it has a user's
@@ -77,6 +77,9 @@ class ClockWatch {
  private:
   double offset_s_;
 };
+
+/// Of datagrams that a node's process refused. @param count at least one @param message its report's
+Finding check_refused(const std::string& node, std::uint64_t count, const std::string& message);
 
 /// @param jump_s [s] change of the clock while it was watched
 Finding check_clock_jump(double jump_s);
