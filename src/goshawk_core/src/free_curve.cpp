@@ -168,9 +168,10 @@ std::optional<Obstruction> obstruction_of_part(const VoxelGrid& grid, const Bezi
 }  // namespace
 
 std::optional<Obstruction> find_obstruction(const VoxelGrid& grid, const BezierPiece& curve,
-                                            double from_s) {
+                                            double from_s, double to_s) {
   const double begin = std::clamp(from_s / curve.duration_s, 0.0, 1.0);
-  return obstruction_of_part(grid, curve, begin, 1.0);
+  const double end = std::clamp(to_s / curve.duration_s, begin, 1.0);
+  return obstruction_of_part(grid, curve, begin, end);
 }
 
 std::optional<Obstruction> find_obstruction(const VoxelGrid& grid, const Trajectory& trajectory,
@@ -190,18 +191,22 @@ std::optional<Obstruction> find_obstruction(const VoxelGrid& grid, const Traject
   return {};
 }
 
+std::string to_text(const VoxelGrid& grid, const Obstruction& found) {
+  const char* what = !grid.grown.contains(found.voxel) ? "its edge"
+                     : grid.unknown_is_occupied && !grid.is_known(found.voxel)
+                         ? "unknown space"
+                         : "an obstacle";
+  return fmt::format("map {} has {} at {} m", grid.version, what,
+                     to_text(grid.geometry.center(found.voxel)));
+}
+
 Status check_against(const VoxelGrid& grid, const CommittedTrajectory& committed, double from_s) {
   const auto found = find_obstruction(grid, committed.flown(), from_s,
                                       std::numeric_limits<double>::infinity());
   if (!found) return success();
-  const char* what = !grid.grown.contains(found->voxel) ? "its edge"
-                     : grid.unknown_is_occupied && !grid.is_known(found->voxel)
-                         ? "unknown space"
-                         : "an obstacle";
   return fail(ErrorCode::trajectory_blocked,
-              fmt::format("trajectory {} is blocked {:.3g} s after its start: map {} has {} at {} m",
-                          committed.id(), found->time_s, grid.version, what,
-                          to_text(grid.geometry.center(found->voxel))));
+              fmt::format("trajectory {} is blocked {:.3g} s after its start: {}", committed.id(),
+                          found->time_s, to_text(grid, *found)));
 }
 
 }  // namespace goshawk

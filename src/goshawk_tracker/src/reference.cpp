@@ -1,6 +1,7 @@
 #include "goshawk/tracker/reference.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "clock_time.hpp"
@@ -67,6 +68,28 @@ FlatState Reference::at(std::int64_t time_ns) const {
   return {path.position, t.rate * path.velocity,
           t.rate * t.rate * path.acceleration + t.rate_1_s * path.velocity,
           t.rate * t.rate * t.rate * path.jerk + 3.0 * t.rate * t.rate_1_s * path.acceleration};
+}
+
+// When it passes a point of its path: the inverse of path_time().
+double Reference::seconds_until(double path_time_s, std::int64_t from_ns) const {
+  if (!brake_ || path_time_s <= brake_->path_time_s) {
+    return path_time_s - seconds(path_start_ns(), from_ns);
+  }
+  const double T = brake_->duration_s;
+  const double left = std::max(0.0, 1.0 - 2.0 * (path_time_s - brake_->path_time_s) / T);
+  return seconds(from_ns, brake_->begin_ns) + T * (1.0 - std::sqrt(left));
+}
+
+std::optional<Obstruction> Reference::find_obstruction(const VoxelGrid& grid, std::int64_t from_ns,
+                                                       std::optional<std::int64_t> to_ns) const {
+  if (rests_always() || at_rest(from_ns)) return {};
+  const double end_s = brake_ ? brake_->path_time_s + brake_->duration_s / 2.0 : path_duration_s();
+  const double from_s = path_time(from_ns).s;
+  const double to_s = to_ns ? std::min(end_s, path_time(*to_ns).s) : end_s;
+  auto found = curve_ ? goshawk::find_obstruction(grid, *curve_, from_s, to_s)
+                      : goshawk::find_obstruction(grid, committed_->flown(), from_s, to_s);
+  if (found) found->time_s = std::max(0.0, seconds_until(found->time_s, from_ns));
+  return found;
 }
 
 bool Reference::at_rest(std::int64_t time_ns) const {

@@ -40,7 +40,7 @@ Result<Tracker> Tracker::create(const Config& config) {
 }
 
 Tracker::Tracker(const Config& config)
-    : config_(config), controller_(config), guard_(config.landing, config.land_height_m) {}
+    : config_(config), controller_(config), guard_(config.landing, config.land_height_m), map_(config.require_map) {}
 
 Status Tracker::reconfigure(const Config& config) {
   if (auto status = check(config); !status) return status;
@@ -54,6 +54,8 @@ Status Tracker::accept(CommittedTrajectory committed, std::int64_t start_ns, std
   auto candidate = Reference::follow(
       std::make_shared<const CommittedTrajectory>(std::move(committed)), start_ns);
   if (auto status = check_start(candidate, now_ns); !status) return status;
+  const double from_s = std::max(0.0, seconds(start_ns, now_ns));
+  if (auto status = map_.check(candidate.committed(), from_s); !status) return status;
   std::erase_if(queue_, [&](const Reference& queued) { return queued.start_ns() >= start_ns; });
   queue_.push_back(std::move(candidate));
   return success();
@@ -221,6 +223,14 @@ void Tracker::switch_trajectories(std::int64_t now_ns) {
 
 std::uint64_t Tracker::followed_id() const {
   return reference_.has_trajectory() ? reference_.committed().id() : 0;
+}
+
+std::uint64_t Tracker::newest_id() const {
+  return queue_.empty() ? followed_id() : queue_.back().committed().id();
+}
+
+std::optional<std::uint64_t> Tracker::map_version() const {
+  return map_.grid() != nullptr ? std::optional(map_.grid()->version) : std::nullopt;
 }
 
 double Tracker::wanted_yaw(std::int64_t now_ns) const {

@@ -19,7 +19,7 @@ std::int64_t ns(double s) {
 }
 
 Tracker make(const Config& config = {}) {
-  return Tracker::create(config).value();
+  return Tracker::create(without_map(config)).value();
 }
 
 RigidBodyState at(const Vec3& p, const Vec3& v = Vec3::Zero()) {

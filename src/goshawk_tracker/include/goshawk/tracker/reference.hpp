@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "goshawk/core/committed_trajectory.hpp"
+#include "goshawk/core/free_curve.hpp"
 
 namespace goshawk::tracker {
 
@@ -35,6 +36,11 @@ class Reference {
   /// At rest for good: a held point, or the end of the trajectory, the curve or the braking.
   bool at_rest(std::int64_t time_ns) const;
 
+  /// Is what is left of it free, until it comes to rest, or until to_ns? A held point is.
+  /// @return the first obstruction; its time counts from from_ns on
+  std::optional<Obstruction> find_obstruction(const VoxelGrid& grid, std::int64_t from_ns,
+                                              std::optional<std::int64_t> to_ns = {}) const;
+
   /// @pre has_trajectory()
   const CommittedTrajectory& committed() const { return *committed_; }
   std::int64_t start_ns() const { return start_ns_; }
@@ -60,6 +66,7 @@ class Reference {
   double path_duration_s() const { return curve_ ? curve_->duration_s : duration_s_; }
   FlatState on_path(double time_s) const;
   PathTime path_time(std::int64_t time_ns) const;
+  double seconds_until(double path_time_s, std::int64_t from_ns) const;
 
   Vec3 hold_map_ = Vec3::Zero();
   std::shared_ptr<const CommittedTrajectory> committed_;
