@@ -44,7 +44,7 @@ std::vector<double> durations_of(const Route& route, const Limits& limits) {
   return durations;
 }
 
-// A longer duration of the same shape is slower everywhere, where both ends rest.
+// A longer duration of the same shape is slower everywhere if both ends rest.
 Result<Trajectory> plan(const Route& route, const FlatState& start, const FlatState& goal,
                         const Limits& limits, Smoothness smoothness) {
   std::vector<double> durations = durations_of(route, limits);

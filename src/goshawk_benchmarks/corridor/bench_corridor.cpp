@@ -65,7 +65,7 @@ std::vector<Generator> generators() {
   std::vector<Generator> all;
   all.push_back({"ellipsoid", builder_of({.max_segment_m = kWhole_m})});
   all.push_back(
-      {"ellipsoid, no growth", builder_of({.max_segment_m = kWhole_m, .growth_passes = 0})});
+      {"ellipsoid, no growth", builder_of({.max_segment_m = kWhole_m, .expansion_passes = 0})});
   all.push_back(
       {"sphere",
        builder_of({.margin = corridor_builder::Margin::sphere, .max_segment_m = kWhole_m}), true});
@@ -90,9 +90,9 @@ struct Quality {
       radius_m.push_back(chebyshev_ball(polytope).radius_m);
       faces.push_back(faces_of(polytope));
       overlapping +=
-          g.sphere ? !check::sphere_faults(polytope, grid.raw, grid.geometry, grid.inflation_m)
-                          .empty()
-                   : check::cuts_into_a_voxel(polytope, grid);
+          g.sphere
+              ? !check::sphere_faults(polytope, grid.raw, grid.geometry, grid.inflation_m).empty()
+              : check::cuts_into_a_voxel(polytope, grid);
     }
     lost += g.corridor.polytopes.front().violation(s.ends_map[0]) > 1e-9 ||
             g.corridor.polytopes.back().violation(s.ends_map[1]) > 1e-9;
@@ -150,7 +150,7 @@ void measure_segments(Report& report, const WorldClass& world, const std::vector
   }
 }
 
-/// Whole paths: joints, bends and dropped polytopes included.
+/// Whole paths: waypoints, bends and dropped polytopes included.
 void measure_paths(Report& report, const WorldClass& world, const std::vector<Scene>& scenes) {
   const std::pair<std::string, Config> rows[] = {
       {"ellipsoid", {}},

@@ -53,7 +53,7 @@ class Sender {
  public:
   Sender(Member& member, const std::string& topic, Quality quality = Quality::reliable_last);
   ~Sender();
-  /// @return false where the middleware did not take it (the reader held it back too long)
+  /// @return false if the middleware did not take it (the reader held it back too long)
   bool send(Stamp stamp);
   int matched() const;
 

@@ -30,7 +30,7 @@ std::vector<std::string> fed_stages();
 
 /// Feeds recorded inputs to a stage over DDS, in turn, with ids and stamps of its own.
 /// @param command of the stage; empty: our component, in a thread of this process
-/// @return invalid_input where the recording lacks the stage's inputs, stage_silent where nobody
+/// @return invalid_input if the recording lacks the stage's inputs, stage_silent where nobody
 /// reads them
 Result<FeedSamples> feed(const FeedOptions& options, const std::string& command,
                          recording::Reader& reader);

@@ -2,6 +2,8 @@
 // controllers, in several weathers, on both plants; judged by the second opinion. Simulated time
 // alone: the same figures on every machine, but for the step times.
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -200,13 +202,13 @@ void run(Report& report) {
       auto mission = plan(density, std::uint64_t(seed));
       if (mission) missions.push_back(*std::move(mission));
     }
-    report.note("planned_at_" + std::to_string(density).substr(0, 3), missions.size());
+    report.note("planned_at_" + fmt::format("{:.2g}", density), missions.size());
     for (const Weather& weather : weathers()) {
       for (const char* controller : {"pd", "geometric"}) {
         for (const bool mujoco : {false, true}) {
           if (mujoco && std::string(weather.name) != "calm") continue;
-          report.progress("density " + std::to_string(density).substr(0, 3) + ", " + controller +
-                          ", " + weather.name + (mujoco ? ", mujoco" : ""));
+          report.progress("density " + fmt::format("{:.2g}", density) + ", " + controller + ", " +
+                          weather.name + (mujoco ? ", mujoco" : ""));
           std::vector<Flown> flights;
           StepTimes steps_us;
           for (const auto& mission : missions) {

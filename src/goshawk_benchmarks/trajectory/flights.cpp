@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <stdexcept>
 
@@ -164,7 +166,7 @@ void measure_flights(Report& report) {
         tallies[i].add(planners[i].fly(task), task);
       }
     }
-    report.progress(task.world + " at density " + std::to_string(density).substr(0, 4));
+    report.progress(task.world + " at density " + fmt::format("{:.2g}", density));
     for (std::size_t i = 0; i < planners.size(); ++i) {
       if (tallies[i].runs == 0) continue;
       report.add(tallies[i].row(task, planners[i].name()));

@@ -21,12 +21,13 @@ struct PathPoint {
   bool settled = false;            // the segment that begins here was bent, or cannot be
 };
 
-/// Polytopes in a row, with points where one is left for the next; n polytopes have n + 1 joints,
-/// start and goal included. Joint k lies near, but not always inside, polytopes k - 1 and k until
-/// settle_joints has moved it. Memory of polytopes that are left out is kept for later ones.
+/// Polytopes in a row, with points where one is left for the next; n polytopes have n + 1
+/// waypoints, start and goal included. Waypoint k lies near, but not always inside, polytopes k - 1
+/// and k until settle_waypoints has moved it. Memory of polytopes that are left out is kept for
+/// later ones.
 class Chain {
  public:
-  std::vector<Vec3> joints_map;
+  std::vector<Vec3> waypoints_map;
   std::vector<Ball> overlaps;
 
   std::size_t size() const { return count_; }
@@ -34,7 +35,7 @@ class Chain {
   const Polytope& operator[](std::size_t k) const { return polytopes_[k]; }
 
   void clear() {
-    joints_map.clear();
+    waypoints_map.clear();
     overlaps.clear();
     count_ = 0;
   }

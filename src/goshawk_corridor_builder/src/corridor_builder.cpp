@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
-#include "box_growth.hpp"
+#include "box_expansion.hpp"
 #include "chain.hpp"
-#include "joints.hpp"
 #include "path_wrapper.hpp"
+#include "waypoints.hpp"
 
 namespace goshawk::corridor_builder {
 namespace {
@@ -21,14 +21,7 @@ constexpr double kMostRounding = 1e-5;  // [voxel edges] beyond it planes are no
 
 std::string segment_text(std::span<const Vec3> path, int k) {
   const auto i = std::size_t(k);
-  return "segment " + std::to_string(k) + " from " + to_text(path[i]) + " to " +
-         to_text(path[i + 1]);
-}
-
-std::string number_text(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
+  return fmt::format("segment {} from {} to {}", k, to_text(path[i]), to_text(path[i + 1]));
 }
 
 // Is a voxel at p, or one that touches it, blocked because it was never measured?
@@ -45,7 +38,7 @@ bool touches_unknown(const VoxelGrid& grid, const Vec3& p) {
 }
 
 // A path of no length at all is a vehicle that stays, or turns, where it is. Within a path that
-// leads somewhere, a segment of no length is a fault of whoever made it.
+// leads somewhere, a segment of no length is a fault of the sender.
 Status check_lengths(std::span<const Vec3> path) {
   const auto differs = [&](const Vec3& p) { return p != path.front(); };
   if (std::ranges::none_of(path, differs)) return success();
@@ -59,7 +52,7 @@ Status check_lengths(std::span<const Vec3> path) {
 
 class CorridorBuilder::Impl {
  public:
-  explicit Impl(const Config& c) : config(c), path_wrapper_(c), box_growth_(c) {}
+  explicit Impl(const Config& c) : config(c), path_wrapper_(c), box_expansion_(c) {}
 
   Status build(const VoxelGrid& grid, std::span<const Vec3> path, Corridor& corridor);
 
@@ -76,7 +69,7 @@ class CorridorBuilder::Impl {
   Error blocked(const VoxelGrid& grid, std::span<const Vec3> path, const Blockage& at) const;
 
   PathWrapper path_wrapper_;
-  BoxGrowth box_growth_;
+  BoxExpansion box_expansion_;
   Margins margins_;
   std::vector<PathPoint> points_;
   Chain chain_;
@@ -88,14 +81,13 @@ Status CorridorBuilder::Impl::build(const VoxelGrid& grid, std::span<const Vec3>
   if (auto status = check_raw(grid); !status) return status;
   if (auto status = check_path(grid, path); !status) return status;
   split_path(grid.geometry, path, config.max_segment_m, points_);
-  const auto blockage =
-      config.generator == Generator::box
-          ? box_growth_.build(grid, points_, margins_, chain_)
-          : path_wrapper_.wrap(grid, layers(grid), margins_, points_, chain_);
+  const auto blockage = config.generator == Generator::box
+                            ? box_expansion_.build(grid, points_, margins_, chain_)
+                            : path_wrapper_.wrap(grid, layers(grid), margins_, points_, chain_);
   if (blockage) return blocked(grid, path, *blockage);
   improve(grid.geometry.resolution_m);
   if (auto status = check_room(path); !status) return status;
-  settle_joints(config.joint_clearance_voxels * grid.geometry.resolution_m, chain_);
+  settle_waypoints(config.waypoint_clearance_voxels * grid.geometry.resolution_m, chain_);
   write(corridor);
   return success();
 }
@@ -122,7 +114,7 @@ void CorridorBuilder::Impl::improve(double resolution_m) {
 
 // Into memory that the caller keeps.
 void CorridorBuilder::Impl::write(Corridor& corridor) const {
-  corridor.waypoints_map.assign(chain_.joints_map.begin(), chain_.joints_map.end());
+  corridor.waypoints_map.assign(chain_.waypoints_map.begin(), chain_.waypoints_map.end());
   corridor.overlaps.assign(chain_.overlaps.begin(), chain_.overlaps.end());
   corridor.polytopes.resize(chain_.size());
   for (std::size_t k = 0; k < chain_.size(); ++k) {
@@ -159,14 +151,15 @@ Status CorridorBuilder::Impl::check_raw(const VoxelGrid& grid) const {
 
 Status CorridorBuilder::Impl::check_path(const VoxelGrid& grid, std::span<const Vec3> path) const {
   if (path.size() < 2) {
-    return fail(ErrorCode::invalid_input, "the path has " + std::to_string(path.size()) +
-                                              " points: a corridor needs a start and a goal");
+    return fail(
+        ErrorCode::invalid_input,
+        fmt::format("the path has {} points: a corridor needs a start and a goal", path.size()));
   }
   for (std::size_t i = 0; i < path.size(); ++i) {
     if (is_finite(path[i])) continue;
     return fail(ErrorCode::invalid_input,
-                "waypoint " + std::to_string(i) + " of the path, an end of segment " +
-                    std::to_string(i == 0 ? 0 : i - 1) + ", is not finite");
+                fmt::format("waypoint {} of the path, an end of segment {}, is not finite", i,
+                            i == 0 ? 0 : i - 1));
   }
   if (auto status = check_lengths(path); !status) return status;
   const Vec3 upper(grid.geometry.size.x, grid.geometry.size.y, grid.geometry.size.z);
@@ -176,10 +169,10 @@ Status CorridorBuilder::Impl::check_path(const VoxelGrid& grid, std::span<const 
         (p.array() <= upper.array() + margins_.touch).all()) {
       continue;
     }
-    return fail(ErrorCode::segment_blocked, segment_text(path, int(i == 0 ? 0 : i - 1)) +
-                                                " leaves the map, which spans " +
-                                                to_text(grid.geometry.origin_map) + " to " +
-                                                to_text(grid.geometry.upper_corner_map()));
+    return fail(ErrorCode::segment_blocked, fmt::format("{} leaves the map, which spans {} to {}",
+                                                        segment_text(path, int(i == 0 ? 0 : i - 1)),
+                                                        to_text(grid.geometry.origin_map),
+                                                        to_text(grid.geometry.upper_corner_map())));
   }
   return success();
 }
@@ -188,16 +181,16 @@ Status CorridorBuilder::Impl::check_path(const VoxelGrid& grid, std::span<const 
 Status CorridorBuilder::Impl::check_room(std::span<const Vec3> path) const {
   const char* squeezes = ": the path squeezes between obstacles that touch; search it without";
   const Polytope& first = chain_[0];
-  const Vec3 middle = 0.5 * (chain_.joints_map[0] + chain_.joints_map[1]);
+  const Vec3 middle = 0.5 * (chain_.waypoints_map[0] + chain_.waypoints_map[1]);
   if (chain_.overlaps.empty() && -first.violation(middle) < kLeastOverlap_m &&
       !(chebyshev_ball(first).radius_m > kLeastOverlap_m)) {
     return fail(ErrorCode::segment_blocked, segment_text(path, 0) + " has no room" + squeezes);
   }
   for (std::size_t k = 0; k < chain_.overlaps.size(); ++k) {
     if (chain_.overlaps[k].radius_m > kLeastOverlap_m) continue;
-    return fail(ErrorCode::corridor_disjoint, "polytopes " + std::to_string(k) + " and " +
-                                                  std::to_string(k + 1) + " share no ball near " +
-                                                  to_text(chain_.joints_map[k + 1]) + squeezes);
+    return fail(ErrorCode::corridor_disjoint,
+                fmt::format("polytopes {} and {} share no ball near {}{}", k, k + 1,
+                            to_text(chain_.waypoints_map[k + 1]), squeezes));
   }
   return success();
 }
@@ -208,10 +201,10 @@ Error CorridorBuilder::Impl::blocked(const VoxelGrid& grid, std::span<const Vec3
   const std::string what =
       touches_unknown(grid, at.p_grid)
           ? "space that was never measured counts as an obstacle there"
-          : "an obstacle (grown by " + number_text(grid.inflation_m) + " m) is in the way";
-  return fail(ErrorCode::segment_blocked, segment_text(path, at.segment) + " is blocked near " +
-                                              to_text(place) + ": " + what +
-                                              "; search the path on this map again");
+          : fmt::format("an obstacle (inflated by {:.3g} m) is in the way", grid.inflation_m);
+  return fail(ErrorCode::segment_blocked,
+              fmt::format("{} is blocked near {}: {}; search the path on this map again",
+                          segment_text(path, at.segment), to_text(place), what));
 }
 
 Result<CorridorBuilder> CorridorBuilder::create(const Config& config) {

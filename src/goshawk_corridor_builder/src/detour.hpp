@@ -21,7 +21,7 @@ class Detour {
  public:
   /// @param between overwritten with points such that the hull of neighbouring balls is free all
   ///   along p, between, q
-  /// @return false where pushing the path away from the nearest obstacles does not help
+  /// @return false if pushing the path away from the nearest obstacles does not help
   bool push_away(const BoxSet& obstacles, const Bounds& map, const Segment& segment,
                  std::vector<Vec3>& between);
 
@@ -29,7 +29,7 @@ class Detour {
   /// the one that holds p to the one that holds q. Half a voxel is free around the polyline that
   /// joins them, so this finds a way; it takes as few of the centres as it can.
   /// @param to_last ends at the last centre in place of q
-  /// @return false where even neighbouring centres are too close to an obstacle
+  /// @return false if even neighbouring centres are too close to an obstacle
   bool along(const BoxSet& obstacles, const Segment& segment, std::span<const Vec3> centres,
              bool to_last, std::vector<Vec3>& between);
 

@@ -53,7 +53,7 @@ struct BoundedMinimum {
   }
 
   // Moves towards target until the first bound of a free coordinate, which then is held.
-  // @return false where target is reached
+  // @return false if target is reached
   bool step_to_bound(const double* target) {
     double step = 1.0;
     int blocking = -1;

@@ -44,7 +44,7 @@ Cone cone_of(const Shape& s, const Plane& plane) {
   return {plane.offset - plane.normal.dot(s.c()), s.stretch(plane.normal)};
 }
 
-// The barrier's two parts, to be weighted: infinite where infeasible.
+// The barrier's two parts, to be weighted: infinite if infeasible.
 struct Merit {
   double shape = std::numeric_limits<double>::infinity();  // -log det L
   double cones = 0.0;                                      // -sum of log(cone values)
@@ -95,7 +95,7 @@ void add_cone(const Cone& cone, const Vec3& n, double weight, Vec9& gradient, Ma
   h[9 * 8 + 8] += k * v[2] * v[2];
 }
 
-// Solves H x = -g by Cholesky's method on the lower triangle. @return false where H is not
+// Solves H x = -g by Cholesky's method on the lower triangle. @return false if H is not
 // positive definite
 bool solve_newton(Mat9& hessian, const Vec9& gradient, Vec9& x) {
   double* h = hessian.data();
@@ -121,7 +121,7 @@ bool solve_newton(Mat9& hessian, const Vec9& gradient, Vec9& x) {
   return true;
 }
 
-// One damped Newton step, where one helps.
+// One damped Newton step, if one helps.
 void newton_step(Shape& s, Merit& here, std::span<const Plane> planes, double weight) {
   Vec9 gradient = Vec9::Zero();
   Mat9 hessian = Mat9::Zero();

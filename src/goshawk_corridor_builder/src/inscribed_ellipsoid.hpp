@@ -13,7 +13,7 @@ namespace goshawk::corridor_builder {
 /// (c, L). They stop short of the optimum on purpose: see kLastWeight.
 ///
 /// @param inside an ellipsoid inside the planes; shrunk by halves until it truly is
-/// @return false where not even a small part of it is (its centre lies on or behind a plane)
+/// @return false if not even a small part of it is (its centre lies on or behind a plane)
 bool grow_inscribed_ellipsoid(std::span<const Plane> planes, const Ellipsoid& inside,
                               Ellipsoid& grown);
 

@@ -63,7 +63,7 @@ std::optional<Blockage> PathWrapper::wrap(const VoxelGrid& grown, const Obstacle
   points_ = &points;
   measure_rooms(grown.grown, points);
   chain.clear();
-  chain.joints_map.push_back(points.front().p_map);
+  chain.waypoints_map.push_back(points.front().p_map);
   for (std::size_t i = 0; i + 1 < points.size();) {
     const Step step = wrap_one(i, chain);
     if (step == Step::blocked) return Blockage{points[i].segment, blocked_grid_};
@@ -78,11 +78,11 @@ std::size_t PathWrapper::join(std::size_t i, Chain& chain) {
   const std::size_t last = chain.size() - 1;
   if (last > 0) chain.overlaps.push_back(chebyshev_ball(chain[last - 1], chain[last]));
   if (config_.drop_covered) i = covered_until(chain[last], i);
-  chain.joints_map.push_back((*points_)[i].p_map);
+  chain.waypoints_map.push_back((*points_)[i].p_map);
   return i;
 }
 
-// Polytopes that meet at a joint must share a ball there; start and goal may lie at an obstacle.
+// Polytopes that meet at a waypoint must share a ball there; start and goal may lie at an obstacle.
 void PathWrapper::measure_rooms(const BitGrid& occupied, std::vector<PathPoint>& points) const {
   for (PathPoint& point : points) {
     const double free = free_radius(occupied, point.p_grid);
@@ -96,15 +96,15 @@ void PathWrapper::measure_rooms(const BitGrid& occupied, std::vector<PathPoint>&
 PathWrapper::Step PathWrapper::wrap_one(std::size_t i, Chain& chain) {
   const PathPoint p = (*points_)[i];
   const PathPoint q = (*points_)[i + 1];
-  const bool no_ball = i + 2 < points_->size() && q.needed == 0.0;  // around the next joint
-  if (no_ball && config_.bend_path && !p.settled) return move_joint(i, chain);
+  const bool no_ball = i + 2 < points_->size() && q.needed == 0.0;  // around the next waypoint
+  if (no_ball && config_.bend_path && !p.settled) return move_waypoint(i, chain);
   // A single polytope has no neighbour to share a ball with.
   const bool may_bend = config_.bend_path && !p.settled && points_->size() > 2;
   const Separation result = build(p, q, may_bend, chain);
   if (result == Separation::roomy) return Step::done;
   if (result == Separation::blocked && (!p.moved || p.settled)) return Step::blocked;
   if (!may_bend && result == Separation::thin) return Step::done;
-  // A joint that was moved may lie behind an obstacle, but not from a path that is bent.
+  // A waypoint that was moved may lie behind an obstacle, but not from a path that is bent.
   bend(i, between(p, q));
   return Step::bent;
 }
@@ -125,8 +125,9 @@ Separation PathWrapper::build(const PathPoint& p, const PathPoint& q, bool stop_
   return result;
 }
 
-// No ball of half a voxel is free around the next joint: the centre of its voxel takes its place.
-PathWrapper::Step PathWrapper::move_joint(std::size_t i, Chain& chain) {
+// No ball of half a voxel is free around the next waypoint: the centre of its voxel takes its
+// place.
+PathWrapper::Step PathWrapper::move_waypoint(std::size_t i, Chain& chain) {
   PathPoint p = (*points_)[i];
   PathPoint q = (*points_)[i + 1];
   p.p_grid = p.given_grid;
@@ -141,12 +142,12 @@ PathWrapper::Step PathWrapper::move_joint(std::size_t i, Chain& chain) {
   if (!detour_.along(segment_polytope_.obstacles(), segment, centres_, true, between_)) {
     return Step::bent;
   }
-  PathPoint& joint = (*points_)[i + 1];
-  joint.moved = true;
-  joint.p_grid = centre(voxels_.back());
-  joint.p_map = grown_->geometry.center(voxels_.back());
-  joint.wanted = joint.needed = kHalfVoxel;
-  between_.pop_back();  // the joint
+  PathPoint& waypoint = (*points_)[i + 1];
+  waypoint.moved = true;
+  waypoint.p_grid = centre(voxels_.back());
+  waypoint.p_map = grown_->geometry.center(voxels_.back());
+  waypoint.wanted = waypoint.needed = kHalfVoxel;
+  between_.pop_back();  // the waypoint
   insert(i);
   return Step::bent;
 }

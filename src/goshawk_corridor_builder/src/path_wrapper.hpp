@@ -24,7 +24,7 @@ class PathWrapper {
 
   /// @param grown what the path was searched on @param map what polytopes keep out of
   /// @param points the path; bent in place
-  /// @param chain overwritten @return nothing, or where the path is blocked
+  /// @param chain overwritten @return nothing, or if the path is blocked
   std::optional<Blockage> wrap(const VoxelGrid& grown, const ObstacleLayers& map,
                                const Margins& margins, std::vector<PathPoint>& points,
                                Chain& chain);
@@ -36,7 +36,7 @@ class PathWrapper {
   Step wrap_one(std::size_t i, Chain& chain);
   std::size_t join(std::size_t i, Chain& chain);
   Separation build(const PathPoint& p, const PathPoint& q, bool stop_when_thin, Chain& chain);
-  Step move_joint(std::size_t i, Chain& chain);
+  Step move_waypoint(std::size_t i, Chain& chain);
   void bend(std::size_t i, const Segment& segment);
   bool walk(std::size_t i);
   void insert(std::size_t i);

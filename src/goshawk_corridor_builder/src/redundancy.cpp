@@ -21,7 +21,7 @@ bool implied_by(const Plane& plane, const Plane& a, const Plane& b, const Plane&
   return bound <= plane.offset + tolerance;
 }
 
-// Two vertices are joined by an edge where they share two planes.
+// Two vertices are joined by an edge if they share two planes.
 template <typename Mask>
 bool has_two(const Mask& mask) {
   unsigned bits = 0;

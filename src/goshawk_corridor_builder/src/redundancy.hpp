@@ -20,7 +20,7 @@ class RedundancyFilter {
  public:
   static constexpr int kMostPlanes = 128;  // further planes all stay
 
-  /// @param planes the first six are the local box, in the order of PolytopeInflation
+  /// @param planes the first six are the local box, in the order of PolytopeExpansion
   /// @param extent the local box is [0, extent] @param kept planes of the answer, in order
   void filter(std::span<const Plane> planes, const Vec3& extent, const Margins& margins,
               std::vector<Plane>& kept);

@@ -76,12 +76,12 @@ Separation SegmentPolytope::build_within(const ObstacleLayers& map, const Segmen
 
   const Ellipsoid first = shrink_around_segment(here.p, here.q, boxes_);
   const auto [separation, at] =
-      inflation_.inflate(first, boxes_, extent, here, stop_when_thin, margins);
+      expansion_.expand(first, boxes_, extent, here, stop_when_thin, margins);
   in_the_way_ = at;
   if (separation == Separation::blocked) return separation;
   if (separation == Separation::thin && stop_when_thin) return separation;
   grow(first, extent, here, margins);
-  redundancy_.filter(inflation_.planes(), extent, margins, faces_);
+  redundancy_.filter(expansion_.planes(), extent, margins, faces_);
   return separation;
 }
 
@@ -110,13 +110,13 @@ void SegmentPolytope::collect(const ObstacleLayers& map, const VoxelBox& local) 
 void SegmentPolytope::grow(const Ellipsoid& first, const Vec3& extent, const Segment& segment,
                            const Margins& margins) {
   Ellipsoid ellipsoid = first;
-  for (int pass = 0; pass < config_.growth_passes; ++pass) {
+  for (int pass = 0; pass < config_.expansion_passes; ++pass) {
     Ellipsoid grown;
-    if (!grow_inscribed_ellipsoid(inflation_.planes(), ellipsoid, grown)) return;
+    if (!grow_inscribed_ellipsoid(expansion_.planes(), ellipsoid, grown)) return;
     if (pass > 0 && volume_of(grown) < kWorthwhile * volume_of(ellipsoid)) return;
-    const auto result = regrown_.inflate(grown, boxes_, extent, segment, false, margins);
+    const auto result = again_.expand(grown, boxes_, extent, segment, false, margins);
     if (result.separation == Separation::blocked) return;
-    inflation_.swap_planes(regrown_);
+    expansion_.swap_planes(again_);
     ellipsoid = grown;
   }
 }

@@ -7,7 +7,7 @@
 #include "goshawk/core/polytope.hpp"
 #include "goshawk/corridor_builder/config.hpp"
 #include "obstacle_boxes.hpp"
-#include "polytope_inflation.hpp"
+#include "polytope_expansion.hpp"
 #include "redundancy.hpp"
 
 namespace goshawk::corridor_builder {
@@ -22,19 +22,19 @@ struct ObstacleLayers {
   GridGeometry geometry;
 };
 
-/// The polytope of one segment, by ellipsoid inflation.
+/// The polytope of one segment, by expansion of an ellipsoid.
 class SegmentPolytope {
  public:
   explicit SegmentPolytope(const Config& config) : config_(config) {
     // They change places with each other: so that neither has to grow late.
     faces_.reserve(RedundancyFilter::kMostPlanes);
     fewest_.reserve(RedundancyFilter::kMostPlanes);
-    inflation_.reserve(RedundancyFilter::kMostPlanes);
-    regrown_.reserve(RedundancyFilter::kMostPlanes);
+    expansion_.reserve(RedundancyFilter::kMostPlanes);
+    again_.reserve(RedundancyFilter::kMostPlanes);
   }
 
   /// @param segment [voxel edges, GridGeometry::to_grid] inside the grid
-  /// @param stop_when_thin ends without a polytope where the balls around its ends do not fit
+  /// @param stop_when_thin ends without a polytope if the balls around its ends do not fit
   /// @param polytope frame map, overwritten unless blocked, or thin and that was to stop it
   Separation build(const ObstacleLayers& map, const Segment& segment, bool stop_when_thin,
                    const Margins& margins, Polytope& polytope);
@@ -56,8 +56,8 @@ class SegmentPolytope {
   Config config_;
   ObstacleMerger merger_;
   BoxSet boxes_;
-  PolytopeInflation inflation_;
-  PolytopeInflation regrown_;
+  PolytopeExpansion expansion_;
+  PolytopeExpansion again_;
   RedundancyFilter redundancy_;
   Vec3 base_ = Vec3::Zero();  // of the local box [voxel edges]
   Obstacle in_the_way_;

@@ -53,7 +53,7 @@ void offer_axes(const Obstacle& o, const Segment& s, const Room& room, Direction
   }
 }
 
-// The direction in which both ends keep farthest: the least distance, or, where that is too
+// The direction in which both ends keep farthest: the least distance, or, if that is too
 // small to have a direction, the best separating axis.
 Direction clearest_direction(const Obstacle& o, const Segment& s, const Room& room) {
   Direction best;

@@ -38,7 +38,7 @@ struct Segment {
   Vec3 p = Vec3::Zero();
   Vec3 q = Vec3::Zero();
   Room wanted = {};
-  Room needed = {};  // at most `wanted`: tried where `wanted` does not fit
+  Room needed = {};  // at most `wanted`: tried if `wanted` does not fit
 };
 
 /// An axis-aligned box that is kept away from by `radius` (a sphere swept over it).
@@ -64,7 +64,7 @@ enum class Separation {
   blocked,  // not at all: the segment enters the obstacle
 };
 
-/// A plane with the whole obstacle beyond it and the segment, with its balls where that is
+/// A plane with the whole obstacle beyond it and the segment, with its balls if that is
 /// possible, before it.
 ///
 /// The normal starts as `towards` (where the ellipsoid touches the box) and turns towards the
@@ -72,7 +72,7 @@ enum class Separation {
 Separation separate(const Vec3& towards, const Obstacle& obstacle, const Segment& segment,
                     const Margins& margins, Plane& plane);
 
-/// How far obstacle and hull of the balls are apart; below zero where they meet.
+/// How far obstacle and hull of the balls are apart; negative if they meet.
 double clearance(const Obstacle& obstacle, const Segment& segment, const Room& room);
 bool meets(const Obstacle& obstacle, const Segment& segment, const Room& room);
 

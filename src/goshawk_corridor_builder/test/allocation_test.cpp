@@ -25,7 +25,7 @@ namespace {
 TEST(CorridorBuilder, AllocatesNothingInARepeatedQuery) {
   for (const Config& config :
        {Config{}, Config{.generator = Generator::box}, Config{.margin = Margin::sphere},
-        Config{.growth_passes = 2, .max_faces = 8}, Config{.bend_path = false}}) {
+        Config{.expansion_passes = 2, .max_faces = 8}, Config{.bend_path = false}}) {
     CorridorBuilder builder = std::move(CorridorBuilder::create(config)).value();
     VoxelGrid grid = test_support::boxes_and_pillars({30, 40, 20}, 0.2, 0.4, 0.2, 7);
     grid.raw = grid.grown;  // as if nothing had been inflated

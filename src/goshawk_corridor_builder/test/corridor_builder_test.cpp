@@ -98,8 +98,8 @@ TEST(CorridorBuilder, TheCheckerSeesPlanesThatAreAMicrometreTooFarOut) {
 
 TEST(CorridorBuilder, NeverCutsIntoAnObstacleWithOtherSettings) {
   Tally tally;
-  prove_many({.local_box_m = 1.0, .growth_passes = 0}, 2, 45, 10, tally);
-  prove_many({.growth_passes = 3, .drop_covered = false}, 3, 45, 10, tally);
+  prove_many({.local_box_m = 1.0, .expansion_passes = 0}, 2, 45, 10, tally);
+  prove_many({.expansion_passes = 3, .drop_covered = false}, 3, 45, 10, tally);
   prove_many({.max_segment_m = 0.7, .max_faces = 10}, 4, 45, 10, tally);
   EXPECT_GE(tally.segments, 1500);
 }
@@ -311,11 +311,13 @@ TEST(CorridorBuilder, FillsAnEmptyWorldWithOnePolytope) {
 }
 
 TEST(CorridorBuilder, ConfigFaultsAreAllListedAtOnce) {
-  const auto made = CorridorBuilder::create(
-      {.generator = Generator(9), .local_box_m = kNaN, .max_segment_m = 0.0, .growth_passes = -1});
+  const auto made = CorridorBuilder::create({.generator = Generator(9),
+                                             .local_box_m = kNaN,
+                                             .max_segment_m = 0.0,
+                                             .expansion_passes = -1});
   ASSERT_FALSE(made.ok());
   EXPECT_EQ(made.code(), ErrorCode::invalid_parameter);
-  for (const char* name : {"generator", "local_box_m", "max_segment_m", "growth_passes"}) {
+  for (const char* name : {"generator", "local_box_m", "max_segment_m", "expansion_passes"}) {
     EXPECT_THAT(made.error().message, HasSubstr(name));
   }
 }

@@ -1,4 +1,4 @@
-// Corridors in maps of real places (OctoMap files); skipped where the files are not there.
+// Corridors in maps of real places (OctoMap files); skipped if the files are absent.
 
 #include <gmock/gmock.h>
 #include <octomap/octomap.h>

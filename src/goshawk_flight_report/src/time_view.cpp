@@ -94,7 +94,7 @@ std::vector<Vec2> tracking_error_mm(const Flight& flight) {
   return points;
 }
 
-/// Room for the curves and the limit; from zero where that does not squeeze them.
+/// Room for the curves and the limit; from zero if that does not squeeze them.
 Interval values(const std::vector<Curve>& curves, std::optional<double> limit) {
   Interval v{1e300, -1e300};
   for (const Curve& curve : curves) {

@@ -1,4 +1,4 @@
-// The pictures are made, hold what they should, and tell what is wrong where they cannot be made.
+// The pictures are made, hold what they should, and tell what is wrong if they cannot be made.
 #include "goshawk/flight_report/draw.hpp"
 
 #include <cairo.h>

@@ -57,6 +57,7 @@ class EveryMessage : public testing::Test {
 using Messages =
     testing::Types<std_msgs::msg::String, geometry_msgs::msg::PoseStamped, nav_msgs::msg::Path,
                    nav_msgs::msg::Odometry, sensor_msgs::msg::PointCloud2,
+                   sensor_msgs::msg::Image, sensor_msgs::msg::CameraInfo,
                    visualization_msgs::msg::MarkerArray, octomap_msgs::msg::Octomap,
                    tf2_msgs::msg::TFMessage, goshawk_msgs::msg::VoxelGrid,
                    goshawk_msgs::msg::VoxelGridUpdate, goshawk_msgs::msg::PlanRequest,

@@ -12,7 +12,7 @@ using Json = nlohmann::ordered_json;
 namespace {
 
 // What others do not write as they read it: NaN has many bit patterns, and npm's ROS 2 writer
-// counts the characters of a text where its bytes are meant.
+// counts the characters of a text instead of its bytes.
 bool is_lossy(const Json& value) {
   if (value.is_string()) {
     const auto& text = value.get_ref<const std::string&>();

@@ -155,8 +155,8 @@ TEST(Writer, WhatWasFlushedIsReadableWithoutAnEnd) {
   EXPECT_EQ(reader->complaints().size(), 1U);
 }
 
-// With any room: every message that counts as written is there, in a file that is whole, where
-// room can be reserved; and at least readable where it cannot.
+// With any room: every message that counts as written is there, in a file that is whole, if
+// room can be reserved; and at least readable if it cannot.
 TEST(Writer, FullDiskKeepsWhatWasWritten) {
   const std::size_t all = write_random(7, 100).bytes->size();
   for (std::uint64_t room = 0; room < all + 1000; room += 711) {

@@ -102,7 +102,7 @@ void ActiveSetSolver::Memory::load_faces(const SplineProblem& problem) {
 }
 
 void ActiveSetSolver::Memory::pack_faces(const SplineProblem& problem, const FacePoint& point) {
-  double probe = 0.0;  // not zero where anything is not finite
+  double probe = 0.0;  // not zero if anything is not finite
   for (int i = point.begin; i < point.end; ++i) {
     const HalfSpace& face = problem.faces[std::size_t(i)];
     probe += 0.0 * (face.normal[0] + face.normal[1] + face.normal[2] + face.offset_m);

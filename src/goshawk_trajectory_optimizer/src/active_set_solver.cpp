@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kMostPieces = 100;  // with more, many constraints bind and rounding grows
 constexpr int kSteps = 30, kStepsAPiece = 8;
-// Where more balls bind than a few, or their directions hang together, the interior point is
+// Where more balls bind than a few, or their directions are strongly coupled, the interior point is
 // faster.
 constexpr int kMostCuts = 16;
 constexpr int kMostTurns = 32;

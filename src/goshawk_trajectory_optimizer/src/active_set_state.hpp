@@ -7,7 +7,7 @@
 namespace goshawk::trajectory_optimizer {
 
 /// normal . y <= bound on a point y = map (two knots), with its multiplier. A face of a polytope,
-/// or the half-space that touches a limit where a control point went through it.
+/// or the half-space that touches a limit if a control point went through it.
 struct Constraint {
   Lanes normal;   // x, y, z, 0
   double map[6];  // of p, v, a of `knot` and of the next
@@ -54,7 +54,7 @@ struct ActiveSetState {
   KnotFactor* factors = nullptr;
   Lanes* x = nullptr;         // 3 a knot: p, v, a; the ends are constant
   Lanes* free = nullptr;      // the same without constraints
-  Lanes* work = nullptr;      // likewise; zero at the ends
+  Lanes* work = nullptr;      // the same; zero at the ends
   Lanes* residual = nullptr;  // gradient of the Lagrangian
   PricedPoint* points = nullptr;
   int point_count = 0;
@@ -76,7 +76,7 @@ struct ActiveSetState {
   double violation = 0.0;  // of it; 0: none is violated
   double own = 0.0;        // a' H^-1 a
   double slope = 0.0;      // of its violation by its multiplier: a' H^-1 (a - A' change)
-  double remainder = 0.0;  // sum |a - A' change|, only where that is small
+  double remainder = 0.0;  // sum |a - A' change|, only if that is small
 
   double objective = 0.0;
   double face_violation = 0.0, limit_violation = 0.0, dual_residual = 0.0, gap = 0.0;
@@ -89,7 +89,7 @@ struct ActiveSetKernels {
   void (*price)(ActiveSetState&);    // the most violated constraint
   void (*reach)(ActiveSetState&);    // own and column of the next constraint
   void (*project)(ActiveSetState&);  // image, change, slope
-  void (*turn)(ActiveSetState&);     // the next constraint, where its limit is active already
+  void (*turn)(ActiveSetState&);     // the next constraint, if its limit is active already
   void (*append)(ActiveSetState&);
   void (*drop)(ActiveSetState&, int index);
   void (*refine)(ActiveSetState&);   // multipliers, from what the active constraints miss

@@ -23,7 +23,7 @@ struct Cutter {
   // Of a flight of hours, whose pieces are longer then.
   static constexpr double kMostPieces = 2000.0;
 
-  /// @param at_moving_end first or last where that end moves
+  /// @param at_moving_end first or last if that end moves
   static Cutter of(const PlanRequest& request, const Config& config, double total_s,
                    double at_moving_end) {
     const double longest_s = std::max(config.piece_duration_s, total_s / kMostPieces);

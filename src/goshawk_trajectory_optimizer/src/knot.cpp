@@ -35,7 +35,7 @@ PointMap position_point(int j, double T) {
 }
 
 PointMap velocity_point(int j, double T) {
-  // The exact forms where the positions cancel; slope() would leave rounding behind.
+  // The exact forms if the positions cancel; slope() would leave rounding behind.
   switch (j) {
     case 0:
       return first_only(0.0, 1.0, 0.0);

@@ -48,7 +48,7 @@ double switch_better(const Task& task, double beyond_m, Plan& plan) {
 }
 
 // @param plan the guess; left as the last solve made it
-// @return how many passes were made; nothing where a solve failed
+// @return how many passes were made; nothing if a solve failed
 std::optional<int> coarse_passes(const Task& task, int most, Refinement refinement,
                                  double first_reach_m, Plan& plan) {
   for (int pass = 0; pass < most; ++pass) {
@@ -161,7 +161,8 @@ std::optional<Flight> soonest_with_cut(const Task& task, Plan plan) {
 std::optional<Flight> soonest(const Task& task) {
   const Plan trapezoid = cut_trapezoid(task.request, task.corridor, task.config);
   if (trapezoid.stays) return fixed_durations(task);
-  return from_rest_to_rest(task.request) ? soonest_from_rest(task, trapezoid) : soonest_moving(task);
+  return from_rest_to_rest(task.request) ? soonest_from_rest(task, trapezoid)
+                                         : soonest_moving(task);
 }
 
 }  // namespace goshawk::trajectory_optimizer

@@ -1,4 +1,4 @@
-// Compiled with -mavx2, called where the processor has it.
+// Compiled with -mavx2, called if the processor has it.
 #include "spline_state.hpp"
 
 namespace goshawk::trajectory_optimizer {

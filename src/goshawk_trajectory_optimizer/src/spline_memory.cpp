@@ -12,7 +12,7 @@ constexpr double kPull = 1.0;         // to the guess, beside the weight of the 
 // The first duality gap in objectives of the guess. With fixed durations the objective is all
 // jerk, and the constraints raise it many times over.
 constexpr double kFirstGap = 2.0;
-constexpr double kFarOff = 10.0;  // squared limits: the time scale begins where it is enough
+constexpr double kFarOff = 10.0;  // squared limits: enough room for the first time scale
 constexpr double kFirstGapFixed = 300.0;
 
 Lanes padded(const Vec3& v) {

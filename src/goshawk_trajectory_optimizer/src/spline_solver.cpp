@@ -46,7 +46,7 @@ SplineSolver::Outcome SplineSolver::solve(const SplineProblem& problem, const Se
 
 // Relaxes the limits of a problem with fixed durations by an unknown eta, which always has an
 // answer inside the polytopes, and bounds the least eta from below. Above 1: infeasible. What is
-// infeasible by a hair needs an exact bound.
+// only just infeasible needs an exact bound.
 bool SplineSolver::needs_more_time(const SplineProblem& problem, const Settings& settings,
                                    Outcome& out) {
   struct Accuracy {
@@ -140,7 +140,7 @@ void SplineSolver::iterate(const Settings& settings, Outcome& out) {
     if (!(step > 1e-7)) break;
     kernels.apply(s, step);
   }
-  // Rounding ends the method before the dual residual where slacks are tiny; what counts for the
+  // Rounding ends the method before the dual residual if slacks are tiny; what counts for the
   // answer, its feasibility and its gap, is there already.
   if (out.dual_residual <= 1e-4 && converged()) out.status = Status::solved;
 }

@@ -112,7 +112,7 @@ struct SplineKernels {
   void (*linearise)(SplineState&);             // takes the step; residuals and reduced Hessian
   bool (*factor)(SplineState&);                // false: not positive definite
   double (*predict)(SplineState&);             // the step to the boundary
-  double (*correct)(SplineState&, double mu);  // likewise; ds and dz are final
+  double (*correct)(SplineState&, double mu);  // the same; ds and dz are final
   void (*apply)(SplineState&, double step);
 };
 

@@ -292,8 +292,8 @@ bool minimise(Dense& dense, double lower, VectorXd& x, double& objective) {
   return status == Solve_Succeeded || status == Solved_To_Acceptable_Level;
 }
 
-// Most rows do not matter. The optimum under some of them is the optimum under all where it breaks
-// none; what it breaks is added. @return false where Ipopt did not solve a round
+// Most rows do not matter. The optimum under some of them is the optimum under all if it breaks
+// none; what it breaks is added. @return false if Ipopt did not solve a round
 bool minimise_under_all(const Dense& all, double lower, VectorXd& x, double& objective) {
   constexpr double kBroken = 1e-10;
   Dense some{all.n, all.P, all.q, all.constant, {}};

@@ -16,7 +16,7 @@ struct ReferenceAnswer {
   std::vector<Knot> knots;
 };
 
-/// @param polytopes in the problem's units, one for each piece. Ends at rest where it scales.
+/// @param polytopes in the problem's units, one for each piece. Ends at rest if it scales.
 ReferenceAnswer solve_with_ipopt(const SplineProblem& problem,
                                  const std::vector<Polytope>& polytopes);
 

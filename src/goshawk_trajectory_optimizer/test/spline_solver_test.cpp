@@ -77,7 +77,7 @@ TEST(SplineSolver, TimeAndShapeTogetherGiveIpoptsObjectiveAndTimeScale) {
   }
 }
 
-// No answer is left open: what is not solved is proved infeasible, also where it is so by a hair.
+// No answer is left open: what is not solved is proved infeasible, even in the tightest cases.
 TEST(SplineSolver, DecidesThousandsOfInstances) {
   SplineSolver solver;
   for (const std::uint64_t seed : {1, 2, 3}) {

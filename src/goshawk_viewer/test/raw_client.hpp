@@ -71,7 +71,7 @@ class RawClient {
     write(frame + std::string(4, '\0') + payload);  // masked with zeros
   }
 
-  /// @return false where none came in time, or the connection is closed
+  /// @return false if none came in time, or the connection is closed
   bool read(Frame& frame, int timeout_ms = 60000) {
     const auto have = [&](std::size_t n) {
       while (buffer_.size() < n) {

@@ -61,7 +61,7 @@ class Builder {
 
 /// Adds shapes from `draw` until `density` of the grown map is blocked. `draw` gets a scale in
 /// (0, 1] that shrinks when shapes turn out too large for what is left.
-/// @return invalid_parameter where the density is not reached
+/// @return invalid_parameter if the density is not reached
 Status fill_to_density(Builder& builder, double density,
                        const std::function<Shape(double scale)>& draw);
 

@@ -1,5 +1,7 @@
 #include "goshawk/worlds/world.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -17,7 +19,7 @@ Error bad(const std::string& what) {
 
 Status check(const WorldSpec& spec) {
   if (!(std::isfinite(spec.resolution_m) && spec.resolution_m > 0.0)) {
-    return bad("the world's resolution is " + std::to_string(spec.resolution_m) +
+    return bad("the world's resolution is " + fmt::format("{}", spec.resolution_m) +
                " m: it must be finite and above zero");
   }
   if (!is_finite(spec.size_m) || spec.size_m.minCoeff() <= 0.0) {
@@ -26,11 +28,11 @@ Status check(const WorldSpec& spec) {
   }
   if (!is_finite(spec.origin_m)) return bad("the world's origin is not finite");
   if (!(spec.density >= 0.0 && spec.density <= 0.95)) {
-    return bad("the world's density is " + std::to_string(spec.density) +
+    return bad("the world's density is " + fmt::format("{}", spec.density) +
                ": it must lie between 0 and 0.95");
   }
   if (!(spec.inflation_m >= 0.0 && spec.inflation_m <= spec.size_m.maxCoeff())) {
-    return bad("the world's inflation is " + std::to_string(spec.inflation_m) +
+    return bad("the world's inflation is " + fmt::format("{}", spec.inflation_m) +
                " m: it must be at least zero and at most the world's longest side");
   }
   return success();
@@ -41,7 +43,7 @@ Result<GridGeometry> geometry_of(const WorldSpec& spec) {
   if (n.maxCoeff() > 65536.0) {
     return fail(ErrorCode::map_too_large,
                 "a world of " + to_text(spec.size_m) + " m at " +
-                    std::to_string(spec.resolution_m) +
+                    fmt::format("{}", spec.resolution_m) +
                     " m has more than 65536 voxels on a side: use a coarser resolution");
   }
   const auto voxels = [](double v) { return std::max(1, int(std::ceil(v - 1e-6))); };

@@ -13,14 +13,14 @@ namespace goshawk::corridor_builder::test_support {
 std::vector<Vec3> vertices_of(const Polytope& polytope);
 
 /// Do the open interiors of a polytope and of a cube meet? All corners of what they have in
-/// common are found; where it has an interior, their mean lies in it.
+/// common are found; if it has an interior, their mean lies in it.
 bool interiors_meet(const Polytope& polytope, const Vec3& lower, const Vec3& upper);
 
 /// Does a polytope's interior meet an occupied cube, or is it unbounded?
 bool cuts_into_a_voxel(const Polytope& polytope, const VoxelGrid& grid);
 
 /// The least distance between a polytope and a box, by trying every pair of their corners, edges
-/// and faces; 0 where they meet.
+/// and faces; 0 if they meet.
 double distance_to_box(const Polytope& polytope, const Vec3& lower, const Vec3& upper);
 
 /// Looks for a set voxel within `radius_m` of a polytope. @return empty, or what is wrong

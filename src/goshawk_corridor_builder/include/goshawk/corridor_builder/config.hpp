@@ -8,17 +8,18 @@
 
 namespace goshawk::corridor_builder {
 
-/// What shapes a corridor. Lengths are in metres, joint clearance in voxel edges.
+/// What shapes a corridor. Lengths are in metres, waypoint clearance in voxel edges.
 struct Config {
   Generator generator = Generator::ellipsoid;
   Margin margin = Margin::grown_grid;
-  double local_box_m = 2.0;             // how far a polytope may reach sideways of its segment
-  double max_segment_m = 8.0;           // longer segments are split into equal parts
-  int growth_passes = 3;                // re-inflations from the inscribed ellipsoid, at most
-  int max_faces = 64;                   // a polytope with more is built again in a smaller box
-  bool bend_path = true;                // where it grazes, so that half a voxel fits around it
-  double joint_clearance_voxels = 1.0;  // how far joints keep from faces, where there is room
-  bool drop_covered = true;             // leave polytopes out whose neighbours meet without them
+  double local_box_m = 2.0;    // how far a polytope may reach sideways of its segment
+  double max_segment_m = 8.0;  // longer segments are split into equal parts
+  int expansion_passes = 3;    // most expansions anew from the inscribed ellipsoid
+  int max_faces = 64;          // a polytope with more is built again in a smaller box
+  bool bend_path = true;       // away from obstacles that it grazes
+  double waypoint_clearance_voxels =
+      1.0;                   // how far inner waypoints keep from faces, if there is room
+  bool drop_covered = true;  // leave polytopes out whose neighbours meet without them
 };
 
 template <typename Self, typename Visitor>
@@ -26,7 +27,7 @@ requires std::same_as<std::remove_const_t<Self>, Config>
 void describe(Self& config, Visitor&& visit) {
   visit(
       "generator", config.generator, "",
-      "ellipsoid: inflation of an ellipsoid, largest polytopes; box: axis-aligned boxes, cheapest",
+      "ellipsoid: expansion of an ellipsoid, largest polytopes; box: axis-aligned boxes, cheapest",
       AtRunTime{Anything{}});
   visit("margin", config.margin, "",
         "how the vehicle's size is kept: grown_grid (planes before the grown voxels) or sphere "
@@ -39,9 +40,9 @@ void describe(Self& config, Visitor&& visit) {
   visit("max_segment_m", config.max_segment_m, "m",
         "path segments longer than this are split into equal parts",
         AtRunTime{Range{0.01, 1000.0}});
-  visit("growth_passes", config.growth_passes, "",
+  visit("expansion_passes", config.expansion_passes, "",
         "how often, at most, a polytope is built anew around its inscribed ellipsoid; it ends "
-        "early where that has hardly grown",
+        "early if that has hardly grown",
         AtRunTime{Range{0.0, 10.0}});
   visit("max_faces", config.max_faces, "",
         "a polytope with more faces is built again in a local box of half the reach, at most "
@@ -51,8 +52,8 @@ void describe(Self& config, Visitor&& visit) {
         "bend the path away from obstacles that it grazes, so that consecutive polytopes share a "
         "ball of half a voxel (ellipsoid)",
         AtRunTime{Anything{}});
-  visit("joint_clearance_voxels", config.joint_clearance_voxels, "voxel",
-        "how far joints between polytopes are kept from faces where there is room",
+  visit("waypoint_clearance_voxels", config.waypoint_clearance_voxels, "voxel",
+        "how far inner waypoints keep from the faces of their polytopes, if there is room",
         AtRunTime{Range{0.0, 100.0}});
   visit("drop_covered", config.drop_covered, "",
         "leave out polytopes whose neighbours share a ball that is as good without them",

@@ -16,10 +16,10 @@ namespace goshawk::corridor_builder {
 ///
 /// Promises for every corridor it returns:
 /// - the open interior of a polytope meets no occupied voxel's cube and does not leave the map;
-///   planes keep at least 1e-7 voxel edges away, or, where the path itself touches an obstacle's
+///   planes keep at least 1e-7 voxel edges away, or, if the path itself touches an obstacle's
 ///   face, are rounded to the free side;
 /// - start and goal are the path's ends, to the bit, and lie in the first and last polytope (up to
-///   1e-9 voxel edges where they touch a face); the path between waypoint k and k + 1 of the
+///   1e-9 voxel edges if they touch a face); the path between waypoint k and k + 1 of the
 ///   result lies in polytope k;
 /// - consecutive polytopes share a ball, which is reported: of half a voxel (less 2e-6 voxel edges)
 ///   wherever the path can be followed through free voxels that share faces, of more than 1e-6 m
@@ -32,14 +32,15 @@ class CorridorBuilder {
   /// @return invalid_parameter, with every fault of the config in one sentence
   static Result<CorridorBuilder> create(const Config& config);
 
-  /// From the next path on by this config; or, where create() would refuse it, as before.
+  /// From the next path on by this config; or, if create() would refuse it, as before.
   Status reconfigure(const Config& config);
 
   CorridorBuilder(CorridorBuilder&&) noexcept;
   CorridorBuilder& operator=(CorridorBuilder&&) noexcept;
   ~CorridorBuilder();
 
-  /// @param grid obstacles inflated by the vehicle already; outside is blocked. With margin `sphere`
+  /// @param grid obstacles inflated by the vehicle already; outside is blocked. With margin
+  /// `sphere`
   ///   it needs its raw voxels: polytopes keep inflation_m away from every one of them (and from
   ///   unknown space if that was inflated as well), measured to the whole cube
   /// @param waypoints_map [m] n >= 2 points, frame `map`; all equal, or no neighbours equal

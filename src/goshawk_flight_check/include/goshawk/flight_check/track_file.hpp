@@ -9,7 +9,7 @@ namespace goshawk::flight_check {
 
 /// A flown track from a table with the columns t_s, x_m, y_m, z_m, qw, qx, qy, qz (in any order,
 /// among others), as `goshawk fly` leaves it in flown.csv.
-/// @return io_failed where the file cannot be read; invalid_input that names the missing column,
+/// @return io_failed if the file cannot be read; invalid_input that names the missing column,
 /// or the line that is wrong
 Result<std::vector<Sample>> read_flown_csv(const std::filesystem::path& file);
 

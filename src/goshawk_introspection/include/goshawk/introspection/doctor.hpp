@@ -53,7 +53,7 @@ std::vector<Finding> check_topics(const std::vector<runtime::ParticipantInfo>& p
 /// @param udp_table the content of /proc/net/udp
 std::vector<int> domains_in_use(const std::string& udp_table);
 
-/// Sockets in use: port to inode, of /proc/net/udp, or of /proc/net/tcp where it listens.
+/// Sockets in use: port to inode, of /proc/net/udp, or of /proc/net/tcp if it listens.
 std::map<int, long> ports_in_use(const std::string& table);
 
 /// UDP ports of the domain that are held by a program that is not a participant: it has a user's

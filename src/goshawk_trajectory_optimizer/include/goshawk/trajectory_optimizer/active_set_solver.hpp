@@ -35,7 +35,7 @@ class ActiveSetSolver {
 
   /// Whether to try at all: fixed durations and at most 100 pieces. A rule of the problem alone.
   static bool suits(const SplineProblem& problem);
-  /// Whether an outcome is final; where not, SplineSolver finds the same optimum.
+  /// Whether an outcome is final; if not, SplineSolver finds the same optimum.
   static bool decided(const Outcome& outcome);
 
   const std::vector<Knot>& knots() const { return solution_; }

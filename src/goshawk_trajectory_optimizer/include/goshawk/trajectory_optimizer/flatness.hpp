@@ -14,7 +14,7 @@ struct FlatnessLimits {
   bool none() const {
     return thrust_max_m_s2 <= 0.0 && thrust_min_m_s2 <= 0.0 && tilt_max_rad <= 0.0;
   }
-  /// The largest acceleration that respects all of them in every direction; below zero where even
+  /// The largest acceleration that respects all of them in every direction; negative if even
   /// hovering does not.
   double safe_acceleration_m_s2() const;
 };
@@ -26,7 +26,7 @@ struct FlatnessLimits {
 struct FlatnessUse {
   double thrust_most_m_s2 = 0.0;
   double thrust_least_m_s2 = 0.0;  // of the vertical part
-  double tilt_rad = 0.0;           // above pi / 2 where f points down
+  double tilt_rad = 0.0;           // above pi / 2 if f points down
 };
 FlatnessUse flatness_of(const BezierPiece& piece);
 FlatnessUse flatness_of(const Trajectory& trajectory);

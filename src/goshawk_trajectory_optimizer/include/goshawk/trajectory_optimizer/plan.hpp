@@ -9,7 +9,7 @@
 
 namespace goshawk::trajectory_optimizer {
 
-/// From rest to rest, where a longer duration of the same shape is always feasible.
+/// From rest to rest: a longer duration of the same shape is always feasible.
 bool from_rest_to_rest(const PlanRequest& request);
 
 /// Pieces with durations and a guess of the knots between them: what a solve begins with.

@@ -14,7 +14,7 @@ namespace goshawk::trajectory_optimizer {
 /// one trapezoid over the path instead of a stop at each waypoint).
 class TimeProfile {
  public:
-  /// @param start_speed_m_s, goal_speed_m_s lowered where the path is too short to brake
+  /// @param start_speed_m_s, goal_speed_m_s lowered if the path is too short to brake
   /// @pre two waypoints or more, limits.check() ok
   TimeProfile(std::span<const Vec3> waypoints_map, const Limits& limits, double start_speed_m_s,
               double goal_speed_m_s);
@@ -35,7 +35,7 @@ class TimeProfile {
   std::vector<Segment> segments_;
 };
 
-/// One segment of length L from rest to rest: 2 sqrt(L / a) where L <= v^2 / a (the thesis prints
+/// One segment of length L from rest to rest: 2 sqrt(L / a) if L <= v^2 / a (the thesis prints
 /// another quantity, which is no time), else L / v + v / a.
 double rest_to_rest_duration_s(double length_m, double v_max_m_s, double a_max_m_s2);
 

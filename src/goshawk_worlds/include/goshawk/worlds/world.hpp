@@ -17,7 +17,7 @@ namespace goshawk::worlds {
 ///           blocked, within kDensityTolerance
 ///   forest  the same with round trunks, some with a crown
 ///   office  rooms on both sides of a corridor, walls with doors, then furniture until this share
-///           of the grown map is blocked; where the walls alone block more, no furniture
+///           of the grown map is blocked; if the walls alone block more, no furniture
 struct WorldSpec {
   std::string kind = "boxes";  // one of world_kinds()
   Vec3 size_m = Vec3(6.0, 8.0, 4.0);

@@ -12,7 +12,7 @@ namespace goshawk::corridor_builder {
 /// behind it, repeat. Obstacles are boxes (with a sphere swept over them) and planes keep them out
 /// whole. What a plane leaves of a box is trimmed to the whole voxels that are not all behind it,
 /// before the box is looked at.
-class PolytopeInflation {
+class PolytopeExpansion {
  public:
   struct Result {
     Separation separation = Separation::roomy;
@@ -23,12 +23,12 @@ class PolytopeInflation {
   ///   -x, +x, -y, +y, -z, +z
   /// @param stop_when_thin gives up at the first obstacle that leaves no room for the balls
   /// @return with planes() the polytope, unless it is blocked, or thin and that is to stop it
-  Result inflate(const Ellipsoid& ellipsoid, const BoxSet& boxes, const Vec3& extent,
-                 const Segment& segment, bool stop_when_thin, const Margins& margins);
+  Result expand(const Ellipsoid& ellipsoid, const BoxSet& boxes, const Vec3& extent,
+                const Segment& segment, bool stop_when_thin, const Margins& margins);
 
   const std::vector<Plane>& planes() const { return planes_; }
   void reserve(std::size_t planes) { planes_.reserve(planes); }
-  void swap_planes(PolytopeInflation& other) { planes_.swap(other.planes_); }
+  void swap_planes(PolytopeExpansion& other) { planes_.swap(other.planes_); }
 
  private:
   void add_local_box(const Vec3& extent, const Segment& segment, const Margins& margins);

@@ -17,11 +17,11 @@ namespace goshawk::corridor_builder {
 /// neighbouring voxels of the path, takes in as much of the path as a free box can, then grows
 /// layer by layer in all six directions; the next one begins at the last voxel of the path in it,
 /// so that two consecutive boxes share a whole voxel.
-class BoxGrowth {
+class BoxExpansion {
  public:
-  explicit BoxGrowth(const Config& config) : config_(config) {}
+  explicit BoxExpansion(const Config& config) : config_(config) {}
 
-  /// @param chain overwritten @return nothing, or where the path has no free voxels to go through
+  /// @param chain overwritten @return nothing, or if the path has no free voxels to go through
   std::optional<Blockage> build(const VoxelGrid& grid, std::span<const PathPoint> path,
                                 const Margins& margins, Chain& chain);
 

@@ -1,4 +1,4 @@
-#include "joints.hpp"
+#include "waypoints.hpp"
 
 #include <algorithm>
 
@@ -24,19 +24,19 @@ double needed_step(const Polytope& polytope, const Vec3& from, const Vec3& cente
 
 void drop_first(Chain& chain) {
   chain.erase(0);
-  chain.joints_map.erase(chain.joints_map.begin() + 1);
+  chain.waypoints_map.erase(chain.waypoints_map.begin() + 1);
   chain.overlaps.erase(chain.overlaps.begin());
 }
 
 void drop_last(Chain& chain) {
   chain.erase(chain.size() - 1);
-  chain.joints_map.erase(chain.joints_map.end() - 2);
+  chain.waypoints_map.erase(chain.waypoints_map.end() - 2);
   chain.overlaps.pop_back();
 }
 
 void drop_inner(std::size_t k, const Ball& shortcut, Chain& chain) {
-  chain.joints_map[k] = 0.5 * (chain.joints_map[k] + chain.joints_map[k + 1]);
-  chain.joints_map.erase(chain.joints_map.begin() + std::ptrdiff_t(k) + 1);
+  chain.waypoints_map[k] = 0.5 * (chain.waypoints_map[k] + chain.waypoints_map[k + 1]);
+  chain.waypoints_map.erase(chain.waypoints_map.begin() + std::ptrdiff_t(k) + 1);
   chain.erase(k);
   chain.overlaps[k - 1] = shortcut;
   chain.overlaps.erase(chain.overlaps.begin() + std::ptrdiff_t(k));
@@ -52,11 +52,11 @@ void measure_overlaps(Chain& chain) {
 }
 
 void drop_covered(double resolution_m, double start_room_m, double goal_room_m, Chain& chain) {
-  while (chain.size() > 1 && -chain[1].violation(chain.joints_map.front()) >= start_room_m) {
+  while (chain.size() > 1 && -chain[1].violation(chain.waypoints_map.front()) >= start_room_m) {
     drop_first(chain);
   }
   while (chain.size() > 1 &&
-         -chain[chain.size() - 2].violation(chain.joints_map.back()) >= goal_room_m) {
+         -chain[chain.size() - 2].violation(chain.waypoints_map.back()) >= goal_room_m) {
     drop_last(chain);
   }
   const double half_voxel_m = (kHalfVoxel - kSolverRounding) * resolution_m;
@@ -71,14 +71,14 @@ void drop_covered(double resolution_m, double start_room_m, double goal_room_m, 
   }
 }
 
-void settle_joints(double clearance_m, Chain& chain) {
+void settle_waypoints(double clearance_m, Chain& chain) {
   for (std::size_t k = 0; k < chain.overlaps.size(); ++k) {
     const Ball& ball = chain.overlaps[k];
     const double clearance = std::min(clearance_m, ball.radius_m);
-    Vec3& joint = chain.joints_map[k + 1];
-    const double step = std::max(needed_step(chain[k], joint, ball.center_map, clearance),
-                                 needed_step(chain[k + 1], joint, ball.center_map, clearance));
-    joint += step * (ball.center_map - joint);
+    Vec3& waypoint = chain.waypoints_map[k + 1];
+    const double step = std::max(needed_step(chain[k], waypoint, ball.center_map, clearance),
+                                 needed_step(chain[k + 1], waypoint, ball.center_map, clearance));
+    waypoint += step * (ball.center_map - waypoint);
   }
 }
 

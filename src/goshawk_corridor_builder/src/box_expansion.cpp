@@ -1,4 +1,4 @@
-#include "box_growth.hpp"
+#include "box_expansion.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -47,7 +47,7 @@ bool contains(const VoxelBox& box, const Index3& i) {
          i.z >= box.lo.z && i.z < box.hi.z;
 }
 
-// One more layer on one side. @return false where it is not free or beyond the limits
+// One more layer on one side. @return false if it is not free or beyond the limits
 bool add_layer(const BitGrid& occupied, int axis, int side, const VoxelBox& limits, VoxelBox& box) {
   VoxelBox layer = box;
   if (side < 0) {
@@ -96,8 +96,8 @@ Vec3 exit_of(const Index3& voxel, const Vec3& p, const Vec3& q) {
 
 }  // namespace
 
-std::optional<Blockage> BoxGrowth::build(const VoxelGrid& grid, std::span<const PathPoint> path,
-                                         const Margins& margins, Chain& chain) {
+std::optional<Blockage> BoxExpansion::build(const VoxelGrid& grid, std::span<const PathPoint> path,
+                                            const Margins& margins, Chain& chain) {
   chain.clear();
   voxels_.clear();
   for (std::size_t i = 0; i + 1 < path.size(); ++i) {
@@ -107,22 +107,22 @@ std::optional<Blockage> BoxGrowth::build(const VoxelGrid& grid, std::span<const 
       return Blockage{path[i].segment, last};
     }
   }
-  chain.joints_map.push_back(path.front().p_map);
+  chain.waypoints_map.push_back(path.front().p_map);
   for (std::size_t begin = 0;;) {
     std::size_t end = begin;
     const VoxelBox box = grow(grid, begin, end);
     planes_of(box, margins, planes_);
     to_map(planes_, Vec3(box.lo.x, box.lo.y, box.lo.z), grid.geometry, chain.append());
     if (end + 1 >= voxels_.size()) break;
-    chain.joints_map.push_back(grid.geometry.center(voxels_[end]));
+    chain.waypoints_map.push_back(grid.geometry.center(voxels_[end]));
     begin = end;
   }
-  chain.joints_map.push_back(path.back().p_map);
+  chain.waypoints_map.push_back(path.back().p_map);
   return std::nullopt;
 }
 
 // @param end the last voxel of the path, counted on from begin, that is inside
-VoxelBox BoxGrowth::grow(const VoxelGrid& grid, std::size_t begin, std::size_t& end) const {
+VoxelBox BoxExpansion::grow(const VoxelGrid& grid, std::size_t begin, std::size_t& end) const {
   VoxelBox box = hull({voxels_[begin], voxels_[begin]}, voxels_[begin]);
   for (end = begin; end + 1 < voxels_.size(); ++end) {
     const VoxelBox more = hull(box, voxels_[end + 1]);

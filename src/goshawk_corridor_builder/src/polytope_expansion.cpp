@@ -1,4 +1,4 @@
-#include "polytope_inflation.hpp"
+#include "polytope_expansion.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -20,8 +20,8 @@ std::size_t index_of_least(const std::vector<double>& values) {
   return std::size_t(std::find(v, v + n, all) - v);
 }
 
-// What a plane leaves of a box, in whole voxels: a layer of the box is cut off where all of it
-// is behind. @return false where nothing is left
+// What a plane leaves of a box, in whole voxels: a layer of the box is cut off if all of it
+// is behind. @return false if nothing is left
 bool trim_by(const Vec3& n, double behind, Vec3& lower, Vec3& upper) {
   const double reach = behind - support(n, lower, upper);
   if (reach <= 0.0) return false;
@@ -39,10 +39,9 @@ bool trim_by(const Vec3& n, double behind, Vec3& lower, Vec3& upper) {
 
 }  // namespace
 
-PolytopeInflation::Result PolytopeInflation::inflate(const Ellipsoid& ellipsoid,
-                                                     const BoxSet& boxes, const Vec3& extent,
-                                                     const Segment& segment, bool stop_when_thin,
-                                                     const Margins& margins) {
+PolytopeExpansion::Result PolytopeExpansion::expand(const Ellipsoid& ellipsoid, const BoxSet& boxes,
+                                                    const Vec3& extent, const Segment& segment,
+                                                    bool stop_when_thin, const Margins& margins) {
   planes_.clear();
   add_local_box(extent, segment, margins);
   active_ = boxes;
@@ -71,7 +70,7 @@ PolytopeInflation::Result PolytopeInflation::inflate(const Ellipsoid& ellipsoid,
 // The active box that an expanding ellipsoid touches first, trimmed by all planes. Distances are
 // computed only of boxes whose lower bound comes up: most are dropped before. @return size() where
 // no box is left
-std::size_t PolytopeInflation::nearest(const Ellipsoid& ellipsoid, const Margins& margins) {
+std::size_t PolytopeExpansion::nearest(const Ellipsoid& ellipsoid, const Margins& margins) {
   while (active_.size() > 0) {
     const std::size_t i = index_of_least(squared_);
     if (trim(i, margins)) continue;
@@ -85,7 +84,7 @@ std::size_t PolytopeInflation::nearest(const Ellipsoid& ellipsoid, const Margins
   return active_.size();
 }
 
-void PolytopeInflation::add_local_box(const Vec3& extent, const Segment& segment,
+void PolytopeExpansion::add_local_box(const Vec3& extent, const Segment& segment,
                                       const Margins& margins) {
   for (int axis = 0; axis < 3; ++axis) {
     for (const double side : {-1.0, 1.0}) {
@@ -100,7 +99,7 @@ void PolytopeInflation::add_local_box(const Vec3& extent, const Segment& segment
   }
 }
 
-void PolytopeInflation::measure(const Ellipsoid& ellipsoid) {
+void PolytopeExpansion::measure(const Ellipsoid& ellipsoid) {
   const std::size_t n = active_.size();
   squared_.resize(n);
   progress_.resize(n);
@@ -112,8 +111,8 @@ void PolytopeInflation::measure(const Ellipsoid& ellipsoid) {
   }
 }
 
-// @return true where box i is not what it was: smaller, or gone
-bool PolytopeInflation::trim(std::size_t i, const Margins& margins) {
+// @return true if box i is not what it was: smaller, or gone
+bool PolytopeExpansion::trim(std::size_t i, const Margins& margins) {
   std::size_t& seen = progress_[i].seen;
   if (seen == planes_.size()) return false;
   Vec3 lower = active_.lower(i);
@@ -131,7 +130,7 @@ bool PolytopeInflation::trim(std::size_t i, const Margins& margins) {
   return true;
 }
 
-void PolytopeInflation::drop_behind(const Plane& plane, const Margins& margins) {
+void PolytopeExpansion::drop_behind(const Plane& plane, const Margins& margins) {
   const std::size_t n = active_.size();
   const Vec3& v = plane.normal;
   const double* x = (v[0] > 0 ? active_.lo : active_.hi)[0].data();
@@ -158,7 +157,7 @@ void PolytopeInflation::drop_behind(const Plane& plane, const Margins& margins) 
   progress_.resize(kept);
 }
 
-void PolytopeInflation::remove(std::size_t i) {
+void PolytopeExpansion::remove(std::size_t i) {
   const std::size_t last = active_.size() - 1;
   active_.copy(last, i);
   squared_[i] = squared_[last];
