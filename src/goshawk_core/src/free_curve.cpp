@@ -17,6 +17,8 @@ using Points = Points3<6>;
 constexpr int kDeepest = 48;
 // Parts looked at for one piece; a curve that needs more runs along a surface within kTouch_m.
 constexpr int kMostParts = 100'000;
+// [voxels] beyond this no grid reaches, and numbers do not tell voxels apart.
+constexpr double kFarthest = 1e12;
 // Boxes that cover more rows are halved before their voxels are looked at.
 constexpr int kManyRows = 64;
 
@@ -139,8 +141,11 @@ class Prover {
 std::optional<Obstruction> obstruction_of_part(const VoxelGrid& grid, const BezierPiece& piece,
                                                double begin, double end) {
   const auto& g = grid.geometry;
-  if (!piece.control_points.allFinite()) return Obstruction{begin * piece.duration_s, {-1, -1, -1}};
   Points curve = (piece.control_points.colwise() - g.origin_map) / g.resolution_m;
+  // NaN as well: neither is anywhere in a grid.
+  if (!(curve.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() < kFarthest)) {
+    return Obstruction{begin * piece.duration_s, {-1, -1, -1}};
+  }
   // Cut to [begin, end] by blossoming: de Casteljau to one end, then to the other.
   for (int side = 0; side < 2; ++side) {
     if (side == 0 ? begin <= 0.0 : end >= 1.0) continue;

@@ -5,7 +5,6 @@
 #include <stdexcept>
 
 #include "goshawk/core/inflation.hpp"
-#include "goshawk/core/random.hpp"
 
 namespace goshawk::whole_stack {
 namespace {

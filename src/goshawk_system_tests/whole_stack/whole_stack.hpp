@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "goshawk/core/random.hpp"
 #include "goshawk/corridor_builder/corridor_builder.hpp"
 #include "goshawk/navigator/navigator.hpp"
 #include "goshawk/path_search/path_search.hpp"

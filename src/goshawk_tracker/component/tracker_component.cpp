@@ -148,6 +148,7 @@ class TrackerComponent : public Component {
     const std::int64_t now_ns = node_.monotonic_ns();
     if (auto grid = map_.take()) tracker_.set_map(std::move(grid), now_ns);
     if (const auto fault = map_.take_fault()) reporter_.fault(*fault);
+    if (!gate_.waits()) return;
     const bool has_odometry = tracker_.status().mode != Mode::idle;
     auto release = gate_.release(has_odometry, tracker_.map_version(), now_ns);
     if (!release) return;

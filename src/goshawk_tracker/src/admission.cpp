@@ -8,10 +8,22 @@
 
 namespace goshawk::tracker {
 
+namespace {
+
+constexpr std::size_t kMostPieces = 4096;
+
+}  // namespace
+
 // Forces within a tilt and below a thrust form a convex set, so that the acceleration's control
 // points bound the whole curve (hull property). Least thrust is not convex; the height of the
 // force bounds it from below and is.
 Status admit(const CommittedTrajectory& committed, const Config& config) {
+  if (committed.flown().pieces.size() > kMostPieces) {
+    return fail(ErrorCode::invalid_input,
+                fmt::format("trajectory {} refused: it has {} pieces; each control step looks "
+                            "through them, and {} are allowed",
+                            committed.id(), committed.flown().pieces.size(), kMostPieces));
+  }
   for (const auto& piece : committed.flown().pieces) {
     const auto points = piece.acceleration_points();
     for (int j = 0; j < points.cols(); ++j) {

@@ -17,44 +17,44 @@ void Tracker::set_map(std::shared_ptr<const VoxelGrid> grid, std::int64_t now_ns
   landing_ ? check_landing(now_ns) : check_flight(now_ns);
 }
 
-// What waits, each to its end; then what is flown until the next of them.
+// From the last that waits to what is flown now: each until the next that is left begins.
 void Tracker::check_flight(std::int64_t now_ns) {
   const VoxelGrid& grid = *map_.grid();
-  for (const Reference& queued : queue_) {
-    const auto found = queued.find_obstruction(grid, std::max(now_ns, queued.start_ns()));
-    if (!found) continue;
-    drop_queued(queued.committed().id(), ErrorCode::trajectory_blocked, to_text(grid, *found));
-    break;
+  const std::uint64_t newest = newest_id();
+  std::optional<std::int64_t> until_ns;
+  for (std::size_t i = queue_.size(); i-- > 0;) {
+    const std::int64_t from_ns = std::max(now_ns, queue_[i].start_ns());
+    if (const auto found = queue_[i].find_obstruction(grid, from_ns, until_ns)) {
+      drop_queued(i, fail(ErrorCode::trajectory_blocked, to_text(grid, *found)), newest);
+      until_ns.reset();
+    } else {
+      until_ns = queue_[i].start_ns();
+    }
   }
-  const auto until_ns = queue_.empty() ? std::nullopt : std::optional(queue_.front().start_ns());
   if (const auto found = reference_.find_obstruction(grid, now_ns, until_ns)) {
-    stop_before(*found, now_ns);
+    stop_before(*found, newest, now_ns);
   }
 }
 
 // With those behind it, which begin on it. The one before it goes on, and ends at rest.
-void Tracker::drop_queued(std::uint64_t id, ErrorCode code, const std::string& why) {
-  const auto first = std::ranges::find(queue_, id, [](const Reference& queued) {
-    return queued.committed().id();
-  });
-  lost_ = fail(code, fmt::format("trajectory {} is dropped before its start: {}", id, why));
-  lost_id_ = queue_.back().committed().id();
-  queue_.erase(first, queue_.end());
+void Tracker::drop_queued(std::size_t first, const Error& why, std::uint64_t newest) {
+  lost_ = fail(why.code, fmt::format("trajectory {} is dropped before its start: {}",
+                                     queue_[first].committed().id(), why.message));
+  lost_id_ = newest;
+  queue_.erase(queue_.begin() + std::ptrdiff_t(first), queue_.end());
 }
 
-void Tracker::stop_before(const Obstruction& found, std::int64_t now_ns) {
+void Tracker::stop_before(const Obstruction& found, std::uint64_t newest, std::int64_t now_ns) {
   const VoxelGrid& grid = *map_.grid();
-  const std::uint64_t id = newest_id();
-  const std::uint64_t flown_id = followed_id();
   queue_.clear();
   const bool is_free = stop_on_free_way(now_ns);
   lost_ = fail(ErrorCode::trajectory_blocked,
-               fmt::format("trajectory {} is blocked {:.3g} s ahead: {}; {}", flown_id,
+               fmt::format("trajectory {} is blocked {:.3g} s ahead: {}; {}", followed_id(),
                            found.time_s, to_text(grid, found),
                            is_free ? "braking before it"
-                                   : "no stop within the limits keeps clear of it: braking as late "
-                                     "into it as possible"));
-  lost_id_ = id;
+                                   : "no stop within the limits keeps clear of it: braking on the "
+                                     "way that meets it last"));
+  lost_id_ = newest;
 }
 
 // Along the path, gently and then harder; then where plan_stop() finds a way. Of those that are not
@@ -88,15 +88,14 @@ bool Tracker::stop_on_free_way(std::int64_t now_ns) {
 
 void Tracker::veto(std::uint64_t id, const std::string& why, std::int64_t now_ns) {
   if (!within_bound(now_ns)) return;
-  const std::string sentence = "the second opinion finds it touching: " + why;
-  const auto has_id = [&](const Reference& queued) { return queued.committed().id() == id; };
-  if (std::ranges::any_of(queue_, has_id)) {
-    return drop_queued(id, ErrorCode::collision, sentence);
+  const Error verdict = fail(ErrorCode::collision, "the second opinion finds it touching: " + why);
+  const std::uint64_t newest = newest_id();
+  for (std::size_t i = 0; i < queue_.size(); ++i) {
+    if (queue_[i].committed().id() == id) return drop_queued(i, verdict, newest);
   }
   if (!reference_.follows() || followed_id() != id || reference_.at_rest(now_ns)) return;
-  lost_ = fail(ErrorCode::collision,
-               fmt::format("trajectory {} is braked for: {}", id, sentence));
-  lost_id_ = newest_id();
+  lost_ = fail(verdict.code, fmt::format("trajectory {} is braked for: {}", id, verdict.message));
+  lost_id_ = newest;
   queue_.clear();
   reference_.brake(now_ns, config_.stop_acceleration_m_s2);
 }

@@ -16,6 +16,7 @@ constexpr double kNear_m = 0.3;
 constexpr double kReturnSpeed_m_s = 0.3;
 constexpr double kSearchStep_s = 0.02;
 constexpr double kWalkStep_s = 0.005;
+constexpr double kLongestWalk_s = 5.0;
 constexpr double kEqual_s = 1e-3;  // contacts that come within this time come together
 
 struct PathPoint {
@@ -34,9 +35,10 @@ PathPoint nearest(const LeftPath& path, const Vec3& position) {
   return best;
 }
 
-/// The point that lies `distance_m` farther along the path, or its end.
+/// The point that lies `distance_m` farther along the path, or its end, or where a path that hardly
+/// moves has got to by then.
 Vec3 farther(const Trajectory& path, double time_s, double distance_m) {
-  const double end_s = path.duration_s();
+  const double end_s = std::min(path.duration_s(), time_s + kLongestWalk_s);
   Vec3 position = path.sample(time_s).position;
   for (double left = distance_m; left > 0.0 && time_s < end_s;) {
     time_s = std::min(end_s, time_s + kWalkStep_s);

@@ -15,6 +15,9 @@ namespace {
 
 const Error kNoFault{ErrorCode::ok, ""};
 constexpr double kSayStall_s = 1.0;
+// What waits is checked with every map: its number and its wait are bounded.
+constexpr std::size_t kMostQueued = 8;
+constexpr double kFarthestStart_s = 60.0;
 
 }  // namespace
 
@@ -56,7 +59,14 @@ Status Tracker::accept(CommittedTrajectory committed, std::int64_t start_ns, std
   if (auto status = check_start(candidate, now_ns); !status) return status;
   const double from_s = std::max(0.0, seconds(start_ns, now_ns));
   if (auto status = map_.check(candidate.committed(), from_s); !status) return status;
-  std::erase_if(queue_, [&](const Reference& queued) { return queued.start_ns() >= start_ns; });
+  const auto first_later = std::ranges::find_if(
+      queue_, [&](const Reference& queued) { return queued.start_ns() >= start_ns; });
+  if (first_later - queue_.begin() >= std::ptrdiff_t(kMostQueued)) {
+    return fail(ErrorCode::not_at_start,
+                fmt::format("trajectory {} refused: {} trajectories wait for their start before it",
+                            candidate.committed().id(), kMostQueued));
+  }
+  queue_.erase(first_later, queue_.end());
   queue_.push_back(std::move(candidate));
   return success();
 }
@@ -65,8 +75,14 @@ Status Tracker::check_start(const Reference& candidate, std::int64_t now_ns) con
   const auto refuse = [&](ErrorCode code, const std::string& why) {
     return fail(code, fmt::format("trajectory {} refused: {}", candidate.committed().id(), why));
   };
-  if (!within_bound(now_ns)) {
-    return refuse(ErrorCode::invalid_input, "the current time is outside the supported range");
+  if (!within_bound(now_ns) || !within_bound(candidate.start_ns())) {
+    return refuse(ErrorCode::invalid_input,
+                  "its start or the current time is outside the supported range");
+  }
+  if (seconds(now_ns, candidate.start_ns()) > kFarthestStart_s) {
+    return refuse(ErrorCode::not_at_start,
+                  fmt::format("it begins {:.3g} s from now: commit it {:g} s ahead at the most",
+                              seconds(now_ns, candidate.start_ns()), kFarthestStart_s));
   }
   if (!has_state_) {
     return refuse(ErrorCode::not_at_start, "there is no odometry yet to tell where the vehicle is");

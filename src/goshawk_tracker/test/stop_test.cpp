@@ -104,6 +104,14 @@ TEST(Stop, BrakesHarderWhenSomethingIsAhead) {
   EXPECT_NEAR(last_s, 1.5, 1e-9);  // 3/2 v / a of the gentle one
 }
 
+// A path that stands still for weeks is not walked along for weeks.
+TEST(Stop, BesideAPathThatHardlyMovesItIsFoundAtOnce) {
+  const Trajectory path{{BezierPiece::between({}, {.position = {1e-3, 0, 0}}, 1e7)}};
+  const FlatState vehicle{.velocity = {1, 0, 0}};
+  const Stop stop = plan_stop(vehicle, LeftPath{&path, 0.0, 1.0}, kLimits, kFreeEverywhere);
+  EXPECT_TRUE(stop.curve.control_points.allFinite());
+}
+
 // A wall that is too near for any stop: the one that meets it last, and it says when.
 TEST(Stop, WhereNoneIsFreeTheOneThatStaysFreeForLongestIsTaken) {
   const FlatState vehicle{.velocity = {2, 0, 0}};

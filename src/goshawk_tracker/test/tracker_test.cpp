@@ -128,6 +128,24 @@ TEST(Tracker, ALaterPlanReplacesWhatIsQueuedForTheSameTimeOrAfter) {
   EXPECT_EQ(other.status().queued, 3);
 }
 
+// Nobody fills the tracker's memory, or its time with every map.
+TEST(Tracker, WhatWaitsIsBounded) {
+  auto tracker = make();
+  ASSERT_TRUE(tracker.step(at({0, 0, 1}), 0));
+  int accepted = 0;
+  for (int k = 0; k < 50; ++k) {
+    const auto status = tracker.accept(line(std::uint64_t(k + 1), {0, 0, 1}, {0, 0, 1}, 1.0 + k), 0);
+    accepted += int(status.ok());
+    if (!status) EXPECT_EQ(status.code(), ErrorCode::not_at_start) << status.error().message;
+  }
+  EXPECT_EQ(accepted, 8);
+  EXPECT_EQ(tracker.status().queued, 8);
+  EXPECT_TRUE(tracker.accept(line(99, {0, 0, 1}, {1, 0, 1}, 0.5), 0)) << "takes the place of all";
+  EXPECT_EQ(tracker.status().queued, 1);
+  EXPECT_EQ(tracker.accept(line(100, {0, 0, 1}, {1, 0, 1}, 3e8), 0).code(),
+            ErrorCode::not_at_start);
+}
+
 TEST(Tracker, ATrajectoryThatBeganIsJoinedWhereItShouldBeByNow) {
   auto tracker = make();
   const auto committed = line(1, {0, 0, 1}, {2, 0, 1}, 0.0);

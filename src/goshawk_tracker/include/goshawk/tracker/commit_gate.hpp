@@ -41,6 +41,8 @@ class CommitGate {
   /// found touching (collision) stays so, whatever is said of it later.
   void hear(std::uint64_t id, const Error& outcome);
 
+  bool waits() const { return waiting_.has_value(); }
+
   struct Release {
     Commit commit;
     Status verdict;  // collision: found touching; stage_silent, or the checker's own code: not judged

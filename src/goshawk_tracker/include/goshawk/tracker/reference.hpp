@@ -22,8 +22,9 @@ class Reference {
   /// From now_ns on this curve instead of what was to come. @pre ends at rest
   void leave_by(const BezierPiece& curve, std::int64_t now_ns);
 
-  /// Come to rest on the path, from now_ns on, at about the given deceleration. Again while
-  /// braking, or on a held point: nothing new.
+  /// Come to rest on the path, from now_ns on, with the given deceleration at its peak (beside the
+  /// path's own), and without a jump of the acceleration. Again while braking, or on a held point:
+  /// nothing new.
   void brake(std::int64_t now_ns, double deceleration_m_s2);
 
   /// Before the trajectory's start: its start, moved back with the start's velocity. After its
@@ -55,11 +56,12 @@ class Reference {
     double path_time_s;  // where on the path it begins
     double duration_s;   // how long it takes
   };
-  /// Time along the path, and its first two derivatives.
+  /// Time along the path, and its first three derivatives.
   struct PathTime {
     double s;
     double rate;
-    double rate_1_s;
+    double rate_1_s = 0.0;
+    double rate_1_s2 = 0.0;
   };
   bool rests_always() const { return !committed_ && !curve_; }
   std::int64_t path_start_ns() const { return curve_ ? curve_ns_ : start_ns_; }

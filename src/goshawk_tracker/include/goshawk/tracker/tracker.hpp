@@ -150,8 +150,8 @@ class Tracker {
                       std::int64_t now_ns) const;
   void check_landing(std::int64_t now_ns);
   void check_flight(std::int64_t now_ns);
-  void drop_queued(std::uint64_t id, ErrorCode code, const std::string& why);
-  void stop_before(const Obstruction& found, std::int64_t now_ns);
+  void drop_queued(std::size_t first, const Error& why, std::uint64_t newest);
+  void stop_before(const Obstruction& found, std::uint64_t newest, std::int64_t now_ns);
   bool stop_on_free_way(std::int64_t now_ns);
   std::uint64_t followed_id() const;
   std::uint64_t newest_id() const;
