@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "goshawk/conversions/geometry.hpp"
 #include "goshawk/conversions/grid.hpp"
 #include "two_nodes.hpp"
 
@@ -23,11 +24,15 @@ VoxelGrid small_grid(std::uint64_t version) {
 /// A node whose thread is kept busy by the test: only the map's own thread runs.
 class InBackground : public testing::Test {
  protected:
+  /// @param done asked until it is true, and not again. @return whether it was
   template <typename Done>
   bool wait(const Done& done) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
-    while (!done() && std::chrono::steady_clock::now() < end) nodes_.other.spin_some(0.01);
-    return done();
+    while (std::chrono::steady_clock::now() < end) {
+      if (done()) return true;
+      nodes_.other.spin_some(0.01);
+    }
+    return false;
   }
   void publish(const VoxelGrid& grid) {
     MapMessage m;
@@ -57,7 +62,7 @@ TEST_F(InBackground, MapsAndUpdatesComeWhileTheNodeDoesSomethingElse) {
   EXPECT_EQ(first->version, 1U);
   EXPECT_EQ(map_.take(), nullptr) << "each once";
 
-  GridUpdate update{.from_version = 1, .to_version = 2};
+  GridUpdate update{1, 2, {}, {}};
   Brick brick;
   brick.grown[0] = 4;  // x = 2
   update.bricks.push_back(brick);

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kShortestBrake_s = 0.5;
 // A smooth step of the rate: it peaks at 3/2 of the mean deceleration.
-constexpr double kPeak = 1.5;
+constexpr double kBrakePeak = 1.5;
 constexpr int kBisections = 40;
 
 // How far along its path a brake gets, as a share of its duration; x in [0, 1].
@@ -45,7 +45,7 @@ void Reference::leave_by(const BezierPiece& curve, std::int64_t now_ns) {
 void Reference::brake(std::int64_t now_ns, double deceleration_m_s2) {
   if (brake_ || at_rest(now_ns)) return;
   const double speed = at(now_ns).velocity.norm();
-  const double duration_s = std::max(kShortestBrake_s, kPeak * speed / deceleration_m_s2);
+  const double duration_s = std::max(kShortestBrake_s, kBrakePeak * speed / deceleration_m_s2);
   brake_ = Brake{now_ns, path_time(now_ns).s, duration_s};
 }
 
