@@ -61,7 +61,7 @@ bool enters_blocked(const World& world, const Vec3& from, const Vec3& to) {
 
 TEST(MapPromise, PlansOfOurOwnAreNeverRefusedNorBrakedForInFlight) {
   int commits = 0;
-  for (int seed = 1; seed <= flights_or(25); ++seed) {
+  for (int seed = 1; seed <= flights_or(10); ++seed) {
     SCOPED_TRACE(seed);
     World world = random_world(std::uint64_t(seed), 0.1 + 0.1 * (seed % 4));
     Random random{std::uint64_t(seed)};
@@ -80,12 +80,12 @@ TEST(MapPromise, PlansOfOurOwnAreNeverRefusedNorBrakedForInFlight) {
     commits += stack.commits;
   }
   std::printf("%d plans, none blocked\n", commits);
-  EXPECT_GT(commits, 2 * flights_or(25));
+  EXPECT_GT(commits, 2 * flights_or(10));
 }
 
 TEST(MapPromise, ForgedTrajectoriesThroughObstaclesAreAlwaysRefused) {
   int refused = 0;
-  for (int seed = 1; seed <= flights_or(25); ++seed) {
+  for (int seed = 1; seed <= flights_or(10); ++seed) {
     SCOPED_TRACE(seed);
     World world = random_world(std::uint64_t(seed) + 5000, 0.3);
     Random random{std::uint64_t(seed)};
@@ -104,7 +104,7 @@ TEST(MapPromise, ForgedTrajectoriesThroughObstaclesAreAlwaysRefused) {
     EXPECT_LT((stack.vehicle.state().position_map - start).norm(), 0.05);
   }
   std::printf("%d forged trajectories, all refused\n", refused);
-  EXPECT_GT(refused, 10 * flights_or(25));
+  EXPECT_GT(refused, 10 * flights_or(10));
 }
 
 /// An obstacle that appears in the vehicle's way, or near it, yet so far that it can stop.
@@ -131,7 +131,7 @@ std::optional<Index3> obstacle_ahead(const Stack& stack, const World& world, Ran
 TEST(MapPromise, ObstaclesThatAppearInFlightAreNeverTouched) {
   int appeared = 0, braked = 0;
   double nearest_m = 1.0, fastest_m_s = 0.0, error_m = 0.0;
-  for (int seed = 1; seed <= flights_or(40); ++seed) {
+  for (int seed = 1; seed <= flights_or(15); ++seed) {
     SCOPED_TRACE(seed);
     World world = random_world(std::uint64_t(seed) + 9000, 0.1 + 0.05 * (seed % 3));
     Random random{std::uint64_t(seed)};
@@ -164,8 +164,8 @@ TEST(MapPromise, ObstaclesThatAppearInFlightAreNeverTouched) {
   std::printf("%d obstacles appeared, %d times braked for; nearest %.3f m, fastest %.2f m/s, "
               "largest tracking error %.4f m\n",
               appeared, braked, nearest_m, fastest_m_s, error_m);
-  EXPECT_GT(appeared, 2 * flights_or(40));
-  EXPECT_GT(braked, flights_or(40) / 2);
+  EXPECT_GT(appeared, 2 * flights_or(15));
+  EXPECT_GT(braked, flights_or(15) / 2);
 }
 
 }  // namespace

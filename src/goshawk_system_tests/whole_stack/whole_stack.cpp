@@ -173,8 +173,8 @@ void Stack::order(const CommittedTrajectory& committed) {
   } else {
     refusals.push_back(answer.error());
   }
-  navigator.on_report(committed.id(), StageRole::tracker, answer ? Error{ErrorCode::ok, ""} : answer.error(),
-                      now_ns());
+  const Error outcome = answer ? Error{ErrorCode::ok, ""} : answer.error();
+  navigator.on_report(committed.id(), StageRole::tracker, outcome, now_ns());
 }
 
 void Stack::watch_tracker() {

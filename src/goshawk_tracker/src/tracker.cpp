@@ -15,6 +15,10 @@ namespace {
 
 const Error kNoFault{ErrorCode::ok, ""};
 constexpr double kSayStall_s = 1.0;
+// Beyond these no odometry is true, and squares of it would not be finite.
+constexpr double kFarthest_m = 1e6;
+constexpr double kFastest_m_s = 1e3;
+constexpr double kFastest_rad_s = 1e3;
 // What waits is checked with every map: its number and its wait are bounded.
 constexpr std::size_t kMostQueued = 8;
 constexpr double kFarthestStart_s = 60.0;
@@ -165,6 +169,13 @@ Status Tracker::check_odometry(const RigidBodyState& state, std::int64_t stamp_n
   if (!within_bound(stamp_ns) || !within_bound(now_ns))
     return invalid("its timestamp is outside the supported range");
   if (!state.is_finite()) return invalid("a number in it is not finite");
+  if (state.position_map.cwiseAbs().maxCoeff() > kFarthest_m ||
+      state.velocity_map.cwiseAbs().maxCoeff() > kFastest_m_s ||
+      state.angular_velocity_base.cwiseAbs().maxCoeff() > kFastest_rad_s) {
+    return invalid("no vehicle is at " + to_text(state.position_map) + " m with " +
+                   to_text(state.velocity_map) + " m/s and " +
+                   to_text(state.angular_velocity_base) + " rad/s");
+  }
   if (!(std::abs(state.q_map_base.norm() - 1.0) <= 1e-3)) {
     return invalid("its quaternion has length " + number(state.q_map_base.norm()) + ", not one");
   }

@@ -288,7 +288,7 @@ TEST(FailuresInFlight, BrakingOnDemandStaysOnThePath) {
   loop.tracker.brake(loop.vehicle.time_ns());
   loop.run_until(loop.vehicle.time_ns() + 3 * kSecond,
                  [&] { EXPECT_LT(std::abs(loop.vehicle.state().position_map.x()), 0.02); });
-  EXPECT_NEAR(loop.vehicle.state().position_map.y() - begin, 1.0, 0.05);  // v^2 / 2a
+  EXPECT_NEAR(loop.vehicle.state().position_map.y() - begin, 1.5, 0.05);  // 3/4 v^2 / a
   EXPECT_EQ(loop.tracker.status().mode, Mode::hold);
 }
 

@@ -80,8 +80,8 @@ class Tracker {
   void brake(std::int64_t now_ns);
 
   /// @param stamp_ns [ns] when `state` was true @param now_ns [ns]
-  /// @return the command; or invalid_input (not finite, no unit quaternion, older than the last,
-  ///         from the future), tracking_lost (older than odometry_timeout_s). A stamp that falls
+  /// @return the command; or invalid_input (not finite, no unit quaternion, farther or faster
+  ///         than any vehicle, older than the last, from the future), tracking_lost (older than odometry_timeout_s). A stamp that falls
   ///         back by more than odometry_timeout_s is a simulation that began anew: everything is
   ///         forgotten, and the vehicle holds where it is.
   Result<AttitudeSetpoint> step(const RigidBodyState& state, std::int64_t stamp_ns,
