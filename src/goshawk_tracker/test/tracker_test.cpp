@@ -134,7 +134,7 @@ TEST(Tracker, WhatWaitsIsBounded) {
   ASSERT_TRUE(tracker.step(at({0, 0, 1}), 0));
   int accepted = 0;
   for (int k = 0; k < 50; ++k) {
-    const auto status = tracker.accept(line(std::uint64_t(k + 1), {0, 0, 1}, {0, 0, 1}, 1.0 + k), 0);
+    const auto status = tracker.accept(line(std::uint64_t(k + 1), {0, 0, 1}, {0.01, 0, 1}, 1.0 + k), 0);
     accepted += int(status.ok());
     EXPECT_THAT(status.code(), testing::AnyOf(ErrorCode::ok, ErrorCode::not_at_start));
   }
@@ -235,7 +235,7 @@ TEST(Tracker, AfterAPauseOfItsOwnItTakesNothingUntilItKnowsWhereTheVehicleIs) {
   ASSERT_TRUE(tracker.accept(replanned(2, first, 1.5, {4, 2, 1}), ns(1.0)));
   tracker.watch(ns(1.6));  // the second one's time has come meanwhile
   EXPECT_EQ(tracker.status().fault.code, ErrorCode::process_stalled);
-  EXPECT_EQ(tracker.status().lost_trajectory_id, 1U);
+  EXPECT_EQ(tracker.status().lost_trajectory_id, 2U);
   EXPECT_EQ(tracker.status().queued, 0);
   const auto status = tracker.accept(replanned(3, first, 1.6, {4, 2, 1}), ns(1.6));
   EXPECT_EQ(status.code(), ErrorCode::not_at_start);
