@@ -6,6 +6,7 @@
 #include <string>
 
 #include "goshawk/path_search/bucket_queue.hpp"
+#include "goshawk/path_search/components.hpp"
 #include "goshawk/path_search/labels.hpp"
 #include "goshawk/path_search/move_cost.hpp"
 #include "goshawk/path_search/move_rules.hpp"
@@ -19,6 +20,11 @@ namespace {
 using Node = ObstacleBits::Node;
 
 constexpr int kExpansionsBetweenLooks = 1024;  // at the clock and the stop token
+
+// The components of a new map are found beside the search: so many bricks at the first look, twice
+// as many at the second, three times at the third. That costs a short search little, and a
+// hopeless one ends soon in a map of any size.
+constexpr int kBricksAtFirstLook = 32;
 
 // Moves put off cost a push and a pop: not worth it for so few of them, at the first visit and
 // when they were put off before.
@@ -50,7 +56,7 @@ template <typename Heuristic, bool kJumps>
 class GridSearch final : public GridPlanner {
  public:
   GridSearch(std::string_view name, CornerRule rule)
-      : name_(name), rule_(rule), rules_(move_rules(rule)) {}
+      : name_(name), rule_(rule), rules_(move_rules(rule)), components_(rule) {}
 
   using GridPlanner::search;
   std::string_view name() const override { return name_; }
@@ -64,6 +70,8 @@ class GridSearch final : public GridPlanner {
   Status check(const GridQuery& query) const;
   void prepare(const GridQuery& query);
   Status run(const StopSignal& stop);
+  bool any_goal_is_joined() const;
+  bool look_for_a_way();
   void expand(Node node, Cost key);
   [[gnu::noinline]] void expand_rest(Node node, BlockMask moves);
   [[gnu::always_inline]] void make_moves(Node node, Index3 at, Label label, Cost key,
@@ -82,6 +90,7 @@ class GridSearch final : public GridPlanner {
   Error map_error_{ErrorCode::no_map, "no map yet: wait for one, or load one, before planning"};
   bool has_map_ = false;
   ObstacleBits bits_;
+  Components components_;
   LabelTable labels_;
   BucketQueue queue_;
   SuccessorOrder order_;
@@ -97,6 +106,8 @@ class GridSearch final : public GridPlanner {
   Goal goal_{};              // the only one, or the one reached
   Cost bound_ = 0;           // only paths below it are of interest: the best so far
   bool reached_ = false;
+  bool joined_ = false;  // start and goal, by components_
+  int looks_ = 0;
   bool too_long_ = false;  // something was left out because its cost does not fit a label
   Counters counters_;
 };
@@ -123,7 +134,7 @@ void GridSearch<Heuristic, kJumps>::set_map(const BitGrid& blocked, const BitGri
       return;
     }
   }
-  bits_.assign(blocked);
+  if (bits_.assign(blocked)) components_.forget();
   has_map_ = true;
 }
 
@@ -139,6 +150,7 @@ Status GridSearch<Heuristic, kJumps>::search(const GridQuery& query, VoxelPath& 
   if (auto status = check(query); !status) return status;
   if (!labels_.start_query()) return too_large(bits_.size());
   prepare(query);
+  if (components_.ready() && !any_goal_is_joined()) return no_way(query);
   Status ended = run(query.stop);
   path.counters = counters_;
   if (!ended) return ended;
@@ -169,6 +181,8 @@ void GridSearch<Heuristic, kJumps>::prepare(const GridQuery& query) {
   queue_.clear(kOctile ? estimate(start_) : 0);
   counters_ = {};
   reached_ = too_long_ = false;
+  joined_ = components_.ready();
+  looks_ = 0;
   bound_ = kMaxCost - kMoveCost[3] * ObstacleBits::kWindow;
 }
 
@@ -190,6 +204,7 @@ Status GridSearch<Heuristic, kJumps>::run(const StopSignal& stop) {
     if (--left == 0) {
       if (auto status = stop.check(); !status) return status;
       left = kExpansionsBetweenLooks;
+      if (!joined_ && !look_for_a_way()) break;
     }
     if (expanded) {
       expand_rest(entry.node, entry.note);
@@ -198,6 +213,20 @@ Status GridSearch<Heuristic, kJumps>::run(const StopSignal& stop) {
     }
   }
   return success();
+}
+
+template <typename Heuristic, bool kJumps>
+bool GridSearch<Heuristic, kJumps>::any_goal_is_joined() const {
+  return std::any_of(goals_.begin(), goals_.end(),
+                     [this](const Goal& goal) { return components_.joined(start_, goal.cell); });
+}
+
+// A share of the work on the components. @return false once they say that there is no way
+template <typename Heuristic, bool kJumps>
+bool GridSearch<Heuristic, kJumps>::look_for_a_way() {
+  if (!components_.advance(bits_.map(), kBricksAtFirstLook * ++looks_)) return true;
+  joined_ = any_goal_is_joined();
+  return joined_;
 }
 
 // @param key g + estimate of the node

@@ -97,24 +97,29 @@ void ObstacleBits::clear(Copy& copy, int u_size, int v_size, int w_size) {
   }
 }
 
-void ObstacleBits::assign(const BitGrid& blocked) {
-  if (!(blocked.size() == size_)) resize(blocked.size());
+bool ObstacleBits::assign(const BitGrid& blocked) {
+  bool changed = !(blocked.size() == size_);
+  if (changed) resize(blocked.size());
   for_changed_chunks(held_, blocked, [&](BitGrid::Rows rows) {
     for (int z = rows.z0; z < rows.z1; ++z) {
-      for (int y = rows.y0; y < rows.y1; ++y) assign_row(blocked, y, z);
+      for (int y = rows.y0; y < rows.y1; ++y) changed |= assign_row(blocked, y, z);
     }
   });
   held_ = blocked;
+  return changed;
 }
 
-void ObstacleBits::assign_row(const BitGrid& blocked, int y, int z) {
+bool ObstacleBits::assign_row(const BitGrid& blocked, int y, int z) {
   const std::uint64_t* before = held_.row(y, z);
   const std::uint64_t* after = blocked.row(y, z);
+  bool changed = false;
   for (int x0 = 0; x0 < size_.x; x0 += 64) {
     std::uint64_t changes = before[x0 >> 6] ^ after[x0 >> 6];
     if (size_.x - x0 < 64) changes &= ~std::uint64_t{0} >> (64 - (size_.x - x0));
     if (changes != 0) apply_changes(changes, x0, y, z);
+    changed |= changes != 0;
   }
+  return changed;
 }
 
 void ObstacleBits::apply_changes(std::uint64_t changes, int x0, int y, int z) {

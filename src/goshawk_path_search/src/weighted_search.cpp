@@ -16,7 +16,7 @@ using Node = ObstacleBits::Node;
 
 constexpr int kExpansionsBetweenLooks = 1024;
 const std::array<double, 4> kLength = {0.0, 1.0, std::sqrt(2.0), std::sqrt(3.0)};
-constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr double kUnreached = std::numeric_limits<double>::infinity();
 
 /// Costs in voxel edges. The queue's integer keys only order the work: a node is expanded again
 /// when it improves, and the search ends when no bucket below the best goal is left.
@@ -63,7 +63,7 @@ class WeightedSearch final : public GridPlanner {
   std::uint32_t query_ = 0;
   std::span<const End> goals_;
   Index3 start_;
-  double bound_ = kNever;
+  double bound_ = kUnreached;
   std::size_t goal_ = 0;
   Counters counters_;
 };
@@ -102,7 +102,7 @@ Status WeightedSearch::search(const GridQuery& query, VoxelPath& path) {
   status = run(query);
   path.counters = counters_;
   if (!status) return status;
-  if (bound_ == kNever) return no_way(query);
+  if (bound_ == kUnreached) return no_way(query);
   trace(path);
   return success();
 }
@@ -110,7 +110,7 @@ Status WeightedSearch::search(const GridQuery& query, VoxelPath& path) {
 Status WeightedSearch::run(const GridQuery& query) {
   goals_ = query.goals;
   start_ = query.start.cell;
-  bound_ = kNever;
+  bound_ = kUnreached;
   counters_ = {};
   queue_.clear(0);
   reach(bits_.node(start_), start_, 0.0, kNoDirection);
@@ -164,7 +164,7 @@ void WeightedSearch::reach(Node node, Index3 at, double cost, int direction) {
 // in any case.
 double WeightedSearch::estimate(Index3 at) const {
   if (!use_heuristic_) return 0.0;
-  double least = kNever;
+  double least = kUnreached;
   for (const End& goal : goals_) {
     const double length = double(OctileHeuristic{}(at, goal.cell)) / double(kUnit) * (1.0 - 1e-10);
     least = std::min(least, length + weights_.climb * std::max(0, goal.cell.z - at.z));

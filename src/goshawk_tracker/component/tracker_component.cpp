@@ -9,6 +9,7 @@
 #include "goshawk/runtime/component.hpp"
 #include "goshawk/stage/background_map.hpp"
 #include "goshawk/stage/intake.hpp"
+#include "goshawk/stage/sender_clock.hpp"
 #include "goshawk/tracker/commit_gate.hpp"
 #include "goshawk/tracker/odometry_clock.hpp"
 #include "goshawk/tracker/tracker.hpp"
@@ -101,8 +102,11 @@ class TrackerComponent : public Component {
         "odom", Qos::best_effort(),
         [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) { on_odometry(m); });
     node.subscribe<msg::NavigatorState>("navigator_alive", Qos::best_effort(),
-                                        [this](const msg::NavigatorState&, const MessageInfo&) {
+                                        [this](const msg::NavigatorState& m, const MessageInfo&) {
                                           tracker_.heard_navigator(node_.monotonic_ns());
+                                          navigator_clock_.hear(
+                                              conversions::to_ns(m.header().stamp()),
+                                              node_.monotonic_ns());
                                         });
     if (config_.second_opinion != SecondOpinion::off) {
       node.subscribe<msg::StageReport>(
@@ -116,12 +120,16 @@ class TrackerComponent : public Component {
  private:
   void on_commit(const msg::CommittedTrajectory& m, const MessageInfo& info) {
     const Timing timing{.wire_ns = wire_time_ns(m.header(), info)};
-    const std::int64_t now_ns = node_.monotonic_ns();
+    const std::int64_t now_ns = node_.monotonic_ns(), wall_ns = node_.now_ns();
+    const std::int64_t skew_ns = navigator_clock_.skew_ns(wall_ns, now_ns);
+    if (const Status clocks = SenderClock::check(skew_ns, "the navigator"); !clocks) {
+      return reporter_.failed(m.nominal().request().id(), clocks.error(), timing);
+    }
     auto received = conversions::from_msg(m);
     if (!received) {
       return reporter_.failed(m.nominal().request().id(), received.error(), timing);
     }
-    const std::int64_t start_ns = received->start_time_ns() + (now_ns - node_.now_ns());
+    const std::int64_t start_ns = received->start_time_ns() - skew_ns + (now_ns - wall_ns);
     const auto old = gate_.put({*std::move(received), start_ns, now_ns, timing.wire_ns});
     if (old) {
       reporter_.failed(*old, fail(ErrorCode::cancelled,
@@ -245,6 +253,7 @@ class TrackerComponent : public Component {
   Config config_;
   Tracker tracker_;
   OdometryClock odometry_clock_;
+  SenderClock navigator_clock_;
   CommitGate gate_;
   StageReporter reporter_;
   BackgroundMap map_;

@@ -28,7 +28,11 @@ class ObstacleBits {
   /// Takes over `blocked`, and keeps a copy of it, which shares its chunks. Of a map of the same
   /// size as before only chunks that differ are looked at; work for each voxel that differs.
   /// @pre nodes_for(blocked.size()) > 0
-  void assign(const BitGrid& blocked);
+  /// @return did any voxel change, or the size?
+  bool assign(const BitGrid& blocked);
+
+  /// The map as it was assigned.
+  const BitGrid& map() const { return held_; }
 
   Index3 size() const { return size_; }
   std::int64_t nodes() const { return size_.x == 0 ? 0 : nodes_for(size_); }
@@ -94,7 +98,7 @@ class ObstacleBits {
 
   void resize(Index3 size);
   void clear(Copy& copy, int u_size, int v_size, int w_size);
-  void assign_row(const BitGrid& blocked, int y, int z);
+  bool assign_row(const BitGrid& blocked, int y, int z);
   void apply_changes(std::uint64_t changes, int x0, int y, int z);
 
   Index3 size_;
