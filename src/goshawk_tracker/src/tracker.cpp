@@ -155,7 +155,7 @@ Result<AttitudeSetpoint> Tracker::step(const RigidBodyState& state, std::int64_t
   const std::int64_t ahead_ns = now_ns + std::llround(config_.actuation_delay_s * 1e9);
   return controller_.step(state_,
                           {.now = reference_.at(stamp_ns_),
-                           .ahead = reference_.at(ahead_ns),
+                           .ahead = reference_at(ahead_ns),
                            .yaw_rad = yaw_rad_,
                            .yaw_rate_rad_s = yaw_rate},
                           since_last_s_);
