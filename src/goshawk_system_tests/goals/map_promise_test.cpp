@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -112,7 +113,7 @@ std::optional<Index3> obstacle_ahead(FlightLab& lab, const GrowingWorld& world, 
   if (!lab.flown() || lab.tracker().status().mode != tracker::Mode::follow) return {};
   const Trajectory& flown = lab.flown()->flown();
   const double now_s = lab.tracker().status().progress_s;
-  const double then_s = random.uniform(now_s, flown.duration_s());
+  const double then_s = std::min(random.uniform(now_s, now_s + 4.0), flown.duration_s());
   Vec3 place = flown.sample(then_s).position;
   for (int axis = 0; axis < 3; ++axis) place[axis] += random.uniform(-0.3, 0.3);
   const auto voxel = world.map()->geometry.index_of(place);
