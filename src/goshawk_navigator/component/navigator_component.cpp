@@ -79,9 +79,19 @@ Result<CommittedTrajectory> begun_at(const CommittedTrajectory& committed, std::
 
 constexpr double kAlive_s = 0.5;  // the newest state again: the tracker lands without it
 
+/// A report can end a request, so it is heard from one process for each stage of the plan and for
+/// the tracker. @return 0: anybody's
+std::uint8_t reporting_stage(const msg::StageReport& m) {
+  namespace constants = msg::StageReport_Constants;
+  const bool decides =
+      m.stage() == constants::STAGE_PATH_SEARCH || m.stage() == constants::STAGE_CORRIDOR_BUILDER ||
+      m.stage() == constants::STAGE_TRAJECTORY_OPTIMIZER || m.stage() == constants::STAGE_TRACKER;
+  return decides ? m.stage() : std::uint8_t{0};
+}
+
 /// goal_pose, odom, trajectory, stage_report, tracking_state, map/voxels -> plan_request,
-/// committed_trajectory, navigator_state, navigator_alive. Counts on the monotonic clock; messages carry the wall
-/// clock's.
+/// committed_trajectory, navigator_state, navigator_alive. Counts on the monotonic clock; messages
+/// carry the wall clock's.
 class NavigatorComponent : public Component {
  public:
   explicit NavigatorComponent(Node& node)
@@ -121,25 +131,28 @@ class NavigatorComponent : public Component {
         "goal_pose", Qos::reliable_last(),
         [this](const geometry_msgs::msg::PoseStamped& m, const MessageInfo&) { on_goal(m); });
     node_.subscribe<nav_msgs::msg::Odometry>(
-        "odom", Qos::best_effort(), [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) {
+        "odom", Qos::best_effort(),
+        [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) {
           const auto state = conversions::from_msg(m);
           if (!state) return;  // the tracker reports bad odometry
           navigator_.on_odometry(*state, node_.monotonic_ns());
-        });
+        },
+        Writers::one("odom"));
     node_.subscribe<msg::BezierTrajectory>(
         "trajectory", Qos::reliable_last(),
-        [this](const msg::BezierTrajectory& m, const MessageInfo& info) {
-          on_trajectory(m, info);
-        });
+        [this](const msg::BezierTrajectory& m, const MessageInfo& info) { on_trajectory(m, info); },
+        Writers::one("trajectory"));
     node_.subscribe<msg::StageReport>(
         "stage_report", Qos::reliable_last(50),
-        [this](const msg::StageReport& m, const MessageInfo&) { on_report(m); });
+        [this](const msg::StageReport& m, const MessageInfo&) { on_report(m); },
+        Writers::one_each<msg::StageReport>("stage_report", &reporting_stage));
     node_.subscribe<msg::TrackingState>(
         "tracking_state", Qos::best_effort(),
         [this](const msg::TrackingState& m, const MessageInfo&) {
           navigator_.on_tracking(m.request_id(), node_.monotonic_ns());
           carry_out();
-        });
+        },
+        Writers::one("tracking_state"));
   }
 
   void on_goal(const geometry_msgs::msg::PoseStamped& m) {
