@@ -105,7 +105,7 @@ double Trajectory::length_m() const {
 
 double Trajectory::jerk_cost() const {
   // The jerk of a quintic is a quadratic Bezier curve: its square integrates exactly with
-  // G_ij = C(2,i) C(2,j) / (5 C(4,i+j)) (corrections.md).
+  // G_ij = C(2,i) C(2,j) / (5 C(4,i+j)) (method.md).
   Eigen::Matrix3d G;
   G << 6.0, 3.0, 1.0, 3.0, 4.0, 3.0, 1.0, 3.0, 6.0;
   double cost = 0.0;

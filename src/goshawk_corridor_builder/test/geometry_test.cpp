@@ -226,7 +226,7 @@ std::vector<Plane> random_polytope(Random& random, int planes, const Vec3& exten
   return all;
 }
 
-bool holds(const std::vector<Plane>& planes, const Vec3& p, double tolerance) {
+bool all_hold(const std::vector<Plane>& planes, const Vec3& p, double tolerance) {
   for (const Plane& plane : planes) {
     if (plane.slack(p) < -tolerance) return false;
   }
@@ -277,7 +277,7 @@ TEST(RedundancyFilter, KeepsThePolytopeAndLeavesOutWhatIsNoFace) {
     left_out += planes.size() - kept.size();
     for (int i = 0; i < 300; ++i) {
       const Vec3 p = 1.4 * random_point(random, 0, 1).cwiseProduct(extent) - 0.2 * extent;
-      ASSERT_TRUE(!holds(kept, p, 0.0) || holds(planes, p, margins.plane));
+      ASSERT_TRUE(!all_hold(kept, p, 0.0) || all_hold(planes, p, margins.plane));
     }
   }
   EXPECT_GT(left_out, 1000U);

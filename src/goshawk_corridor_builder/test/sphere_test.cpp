@@ -84,8 +84,7 @@ TEST(SphereMargin, KeepsTheRadiusFromEveryRawVoxelAndHoldsThePath) {
       EXPECT_EQ(corridor->waypoints_map.back(), path.back());
       for (const Polytope& polytope : corridor->polytopes) {
         ASSERT_EQ(
-            test_support::sphere_faults(polytope, scene.raw, scene.geometry, scene.inflation_m),
-            "")
+            test_support::sphere_faults(polytope, scene.raw, scene.geometry, scene.inflation_m), "")
             << "world " << w << ", path " << k;
       }
       for (const Ball& ball : corridor->overlaps) {

@@ -2,34 +2,24 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
-#include "goshawk/core/vehicle.hpp"
+#include "goshawk/core/thrust.hpp"
 
 namespace goshawk::tracker {
 
-// Forces within a tilt and below a thrust form a convex set, so that the acceleration's control
-// points bound the whole curve (hull property). Least thrust is not convex; the height of the
-// force bounds it from below and is.
 Status admit(const CommittedTrajectory& committed, const Config& config) {
-  for (const auto& piece : committed.flown().pieces) {
-    const auto points = piece.acceleration_points();
-    for (int j = 0; j < points.cols(); ++j) {
-      const Vec3 force = config.mass_kg * (points.col(j) + Vec3(0.0, 0.0, kGravity_m_s2));
-      const double tilt = std::atan2(force.head<2>().norm(), force.z());
-      if (force.norm() <= config.max_thrust_n && force.z() >= config.min_thrust_n &&
-          tilt <= config.max_tilt_rad) {
-        continue;
-      }
-      return fail(ErrorCode::trajectory_infeasible,
-                  fmt::format("trajectory {} refused: it needs a thrust of {:.3g} N at a tilt of "
-                              "{:.3g} rad; the tracker's bounds are {:.3g} to {:.3g} N and {:.3g} "
-                              "rad: plan with a lower a_max",
-                              committed.id(), force.norm(), tilt, config.min_thrust_n,
-                              config.max_thrust_n, config.max_tilt_rad));
-    }
+  const double mass = config.mass_kg;
+  const ThrustUse use = thrust_of(committed.flown());
+  if (respects(use,
+               {config.max_thrust_n / mass, config.min_thrust_n / mass, config.max_tilt_rad})) {
+    return success();
   }
-  return success();
+  return fail(
+      ErrorCode::trajectory_infeasible,
+      fmt::format("trajectory {} refused: it needs thrusts of {:.3g} to {:.3g} N and a tilt "
+                  "of {:.3g} rad; the tracker's bounds are {:.3g} to {:.3g} N and {:.3g} "
+                  "rad: plan with a lower a_max",
+                  committed.id(), mass * use.thrust_least_m_s2, mass * use.thrust_most_m_s2,
+                  use.tilt_rad, config.min_thrust_n, config.max_thrust_n, config.max_tilt_rad));
 }
 
 }  // namespace goshawk::tracker

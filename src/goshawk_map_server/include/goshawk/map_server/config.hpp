@@ -35,6 +35,7 @@ struct Config {
   int max_voxels = 1'000'000'000;
   int max_tree_mb = 4000;
   bool publish_raw = false;
+  std::string journal_file = "";
 };
 
 template <typename Self, typename Visitor>
@@ -89,6 +90,10 @@ void describe(Self& c, Visitor&& visit) {
       "map/voxels also brings the obstacles as measured: a corridor_builder with margin sphere "
       "needs them",
       Anything{});
+  visit("journal_file", c.journal_file, "",
+        "keeps what scans have told, so that a map server that was killed goes on with the map that "
+        "it had; a launch names one in its folder of logs; empty: none",
+        Anything{});
 }
 
 /// The config in the terms of the functions that do the work. @pre values as describe() allows

@@ -31,7 +31,7 @@ PointMap acceleration_point(int j, double T);
 PointMap jerk_point(int j, double T);
 
 /// The integral of the squared jerk over a piece is, for each axis, x' Q x with
-/// x = (p, v, a of the first knot, p, v, a of the second) (corrections.md, jerk cost).
+/// x = (p, v, a of the first knot, p, v, a of the second) (method.md, Jerk cost).
 Eigen::Matrix<double, 6, 6, Eigen::DontAlign> jerk_hessian(double T);
 
 }  // namespace goshawk::trajectory_optimizer

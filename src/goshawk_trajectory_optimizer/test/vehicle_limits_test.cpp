@@ -3,7 +3,7 @@
 
 #include "corridor_maker.hpp"
 #include "goshawk/core/vehicle.hpp"
-#include "goshawk/trajectory_optimizer/flatness.hpp"
+#include "goshawk/core/thrust.hpp"
 #include "goshawk/trajectory_optimizer/trajectory_optimizer.hpp"
 
 namespace goshawk::trajectory_optimizer {
@@ -16,12 +16,12 @@ Solution fly(const Corridor& corridor, const Limits& limits = {}, const Config& 
   return optimizer.optimise(test::ask(corridor, limits), corridor).value();
 }
 
-TEST(Flatness, BoundsHoldOnTheSampledCurve) {
+TEST(VehicleLimits, BoundsHoldOnTheSampledCurve) {
   Random random(5);
   for (int i = 0; i < 50; ++i) {
     const auto trajectory =
         fly(test::random_corridor(random, {}), {.v_max_m_s = 4.0, .a_max_m_s2 = 8.0}).trajectory();
-    const FlatnessUse use = flatness_of(trajectory);
+    const ThrustUse use = thrust_of(trajectory);
     for (int k = 0; k <= 1000; ++k) {
       const Vec3 f = trajectory.sample(trajectory.duration_s() * k / 1000).acceleration +
                      Vec3(0, 0, kGravity_m_s2);
@@ -32,7 +32,7 @@ TEST(Flatness, BoundsHoldOnTheSampledCurve) {
   }
 }
 
-TEST(Flatness, AFlightThatAsksTooMuchIsSlowedWhereItDoes) {
+TEST(VehicleLimits, AFlightThatAsksTooMuchIsSlowedWhereItDoes) {
   Random random(6);
   const Limits limits{.v_max_m_s = 4.0, .a_max_m_s2 = 6.0};
   int slowed = 0;
@@ -44,9 +44,9 @@ TEST(Flatness, AFlightThatAsksTooMuchIsSlowedWhereItDoes) {
     config.max_thrust_m_s2 = 14.0;
     const auto free = fly(corridor, limits);
     const auto able = fly(corridor, limits, config);
-    EXPECT_TRUE(respects(flatness_of(able.trajectory()), {14.0, 0.0, 0.35}));
+    EXPECT_TRUE(respects(thrust_of(able.trajectory()), {14.0, 0.0, 0.35}));
     // Not slower than a flight whose limit is safe everywhere.
-    const double safe = FlatnessLimits{14.0, 0.0, 0.35}.safe_acceleration_m_s2();
+    const double safe = ThrustLimits{14.0, 0.0, 0.35}.safe_acceleration_m_s2();
     const auto careful = fly(corridor, {.v_max_m_s = 4.0, .a_max_m_s2 = safe});
     EXPECT_LE(able.trajectory().duration_s(), careful.trajectory().duration_s() + 1e-9);
     slowed += able.trajectory().duration_s() > free.trajectory().duration_s() ? 1 : 0;
@@ -54,7 +54,7 @@ TEST(Flatness, AFlightThatAsksTooMuchIsSlowedWhereItDoes) {
   EXPECT_GT(slowed, 20);
 }
 
-TEST(Flatness, ALimitThatIsSetBetweenTwoFlightsHoldsForTheNext) {
+TEST(VehicleLimits, ALimitThatIsSetBetweenTwoFlightsHoldsForTheNext) {
   Random random(8);
   const auto corridor = test::random_corridor(random, {});
   const auto flown = [&](TrajectoryOptimizer& optimizer) {
@@ -66,7 +66,7 @@ TEST(Flatness, ALimitThatIsSetBetweenTwoFlightsHoldsForTheNext) {
   config.max_tilt_rad = 0.1;
   ASSERT_TRUE(optimizer.reconfigure(config));
   const auto after = flown(optimizer);
-  EXPECT_TRUE(respects(flatness_of(after.trajectory()), {0.0, 0.0, 0.1}));
+  EXPECT_TRUE(respects(thrust_of(after.trajectory()), {0.0, 0.0, 0.1}));
   EXPECT_GT(after.trajectory().duration_s(), before.trajectory().duration_s());
   Config bad;
   bad.max_tilt_rad = 2.0;
@@ -76,7 +76,7 @@ TEST(Flatness, ALimitThatIsSetBetweenTwoFlightsHoldsForTheNext) {
   EXPECT_EQ(flown(optimizer).trajectory().duration_s(), before.trajectory().duration_s());
 }
 
-TEST(Flatness, AVehicleThatCannotHoverIsSaidToBeOne) {
+TEST(VehicleLimits, AVehicleThatCannotHoverIsSaidToBeOne) {
   Config config;
   config.max_thrust_m_s2 = 9.0;
   auto optimizer = TrajectoryOptimizer::create(config).value();
