@@ -1,6 +1,5 @@
 // Cases in which a search has most to do or least to go by: no way, a new map, a changed map.
 #include <algorithm>
-#include <ctime>
 #include <stdexcept>
 
 #include "common/measure.hpp"
@@ -22,8 +21,9 @@ using Json = nlohmann::ordered_json;
 constexpr int kChangedVoxels = 1000;
 
 struct Search {
-  explicit Search(const std::string& rule) {
+  explicit Search(const std::string& rule, bool reuse_path = false) {
     Config config;
+    config.reuse_path = reuse_path;
     config.corner_rule = from_word<CornerRule>(rule).value();
     planner = std::move(path_search::make_planner(config)).value();
   }
@@ -40,7 +40,7 @@ struct Search {
   ErrorCode code = ErrorCode::ok;
 };
 
-/// Changes voxels of the whole map, none of which is an end of the query.
+/// Changes voxels anywhere in the map, none of which is an end of the query.
 void change(BitGrid& map, const World::Query& q, Random& random) {
   for (int k = 0; k < kChangedVoxels; ++k) {
     const Index3 at{random.below(map.size().x), random.below(map.size().y),
@@ -132,26 +132,33 @@ void measure_no_way(Report& report, const Case& c) {
   report.add(row_of(c, "flood, voxel by voxel", flood, 0.0));
 }
 
+// Two planners on the same maps, side by side: one searches again, one may keep its path.
 void measure_replanning(Report& report, Case c) {
   report.progress(c.table + ", " + c.map + ", " + c.rule);
-  std::vector<double> set_map, replan, expanded;
+  std::vector<double> set_map, replan, reuse, expanded, expanded_reusing;
   for (World& world : c.worlds) {
     World::Query q = world.queries.front();
     BitGrid& map = world.blocked;
     Random random(1);
-    Search search(c.rule);
-    (void)search.map_us(map);
-    (void)search.query_us(q);
-    for (int k = 0; k < 10 && search.code == ErrorCode::ok; ++k) {
-      q.start = search.path.cells[std::min<std::size_t>(3, search.path.cells.size() - 1)];
+    Search search(c.rule), reusing(c.rule, true);
+    for (Search* s : {&search, &reusing}) {
+      (void)s->map_us(map);
+      (void)s->query_us(q);
+    }
+    for (int k = 0; k < 10 && reusing.code == ErrorCode::ok; ++k) {
+      q.start = reusing.path.cells[std::min<std::size_t>(3, reusing.path.cells.size() - 1)];
       change(map, q, random);
       set_map.push_back(search.map_us(map));
       replan.push_back(search.query_us(q));
       expanded.push_back(double(search.path.counters.expanded));
+      (void)reusing.map_us(map);
+      reuse.push_back(reusing.query_us(q));
+      expanded_reusing.push_back(double(reusing.path.counters.expanded));
     }
   }
   report.add(row_of(c, "jastar, map update of 1,000 voxels", set_map, 0.0));
   report.add(row_of(c, "jastar, search after it", replan, median(expanded)));
+  report.add(row_of(c, "jastar, reuse_path, after it", reuse, median(expanded_reusing)));
 }
 
 }  // namespace goshawk::bench
