@@ -54,8 +54,9 @@ void measure_first(Report& report, const Case& c);
 /// voxels changed; and a flood from the start for comparison.
 void measure_no_way(Report& report, const Case& c);
 
-/// Rows for the same goal after the map changed a little and the start moved along the path.
-void measure_replanning(Report& report, Case c);
+/// Rows for the same goal after the map changed a little and the start moved along the path: searched
+/// again, and with reuse_path. @param boxes a box appears, else 1,000 voxels change anywhere
+void measure_replanning(Report& report, Case c, bool boxes);
 
 /// One row a kind of pruning: waypoints and length before and after.
 void measure_pruning(Report& report, Case c);

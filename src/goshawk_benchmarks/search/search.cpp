@@ -214,7 +214,7 @@ void hard(Report& report, bool quick) {
     measure_first(report, any);
     any.table = "replanning";
     any.worlds = seeds(quick ? 1 : 3, worlds::boxes, size, 0.2);
-    measure_replanning(report, any);
+    for (const bool boxes : {true, false}) measure_replanning(report, any, boxes);
   }
 }
 
