@@ -101,6 +101,13 @@ class ScriptsTest(unittest.TestCase):
         self.assertEqual(result.returncode, 1)
         self.assertIn("apt-get install chromium nodejs npm", result.stderr)
 
+    def test_setup_installs_slurm_only_if_it_is_asked_to(self):
+        env = self.fake_debian(self.all_installed(), user=1000)
+        self.assertEqual(run(TOOLS / "setup", env=env).returncode, 0)
+        result = run(TOOLS / "setup", "--slurm", env=env)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("apt-get install munge slurm-client slurmctld slurmd", result.stderr)
+
     def test_setup_for_tests_does_without_npm(self):
         installed = self.all_installed() + "ii chromium\\nii nodejs\\nii npm\\n"
         result = run(TOOLS / "setup", "--tests", env=self.fake_debian(installed, user=1000))

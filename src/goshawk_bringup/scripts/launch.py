@@ -173,8 +173,7 @@ def place(plan, options):
             for axis, value in zip("xyz", options["start"].split(",")):
                 plan.extra += ["-p", f"{plant}:start_{axis}_m:={value}"]
         return None
-    stages = [s for s in plan.stages if "component" in s]
-    arguments = plan.ros_args(stages)
+    arguments = plan.ros_args(plan.stages_with_nodes())
     named = any(a.startswith(f"{server}:map_file:=") for a in arguments)
     if named and not options["map"] and not options["start"]:
         return None
@@ -197,6 +196,19 @@ def place(plan, options):
     return answer["message"]
 
 
+def keep_journal(plan, log_dir):
+    """Gives the map server a journal, so that it comes back with the map that it had. What another
+    launch left there is of another flight."""
+    server = plan.node_of({"map_server"})
+    if server is None or any(a.startswith(f"{server}:journal_file:=")
+                             for a in plan.ros_args(plan.stages_with_nodes())):
+        return
+    path = os.path.abspath(os.path.join(log_dir, "map.journal"))
+    if os.path.exists(path):
+        os.unlink(path)
+    plan.extra += ["-p", f"{server}:journal_file:={path}"]
+
+
 def domain_of(content):
     domain = content.get("domain", os.environ.get("ROS_DOMAIN_ID") or 0)
     try:
@@ -212,7 +224,11 @@ def domain_of(content):
 def launch(options, voice):
     content = launch_file.read(options["file"])
     domain = domain_of(content)
-    plan = launch_file.Plan(content, options["file"], options["prefix"], options["ros_args"])
+    interfaces = launch_file.choose_host(content, options["file"], options["host"])
+    if interfaces:
+        os.environ.setdefault("GOSHAWK_INTERFACES", interfaces)
+    plan = launch_file.Plan(content, options["file"], options["prefix"], options["ros_args"],
+                            options["host"])
     nodes = [node for program in plan.programs() for node in program.nodes]
     if options["check"]:
         names = [program.name for program in plan.programs()]
@@ -224,6 +240,7 @@ def launch(options, voice):
     said = place(plan, options)
     if said:
         voice.say("placed", text=said)
+    keep_journal(plan, options["log_dir"])
     programs = plan.programs()
     running = Launch(programs, os.path.abspath(options["log_dir"]), voice)
 

@@ -7,8 +7,9 @@ import shutil
 
 import yaml
 
-FILE_KEYS = {"namespace", "domain", "container", "params_files", "stages"}
-STAGE_KEYS = {"component", "node", "params", "remap", "command", "name", "realtime", "essential"}
+FILE_KEYS = {"namespace", "domain", "container", "params_files", "hosts", "stages"}
+STAGE_KEYS = {"component", "node", "params", "remap", "command", "name", "realtime", "essential",
+              "host"}
 NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]*")
 # A flight goes on without these.
 OBSERVERS = {"flight_check", "viewer_bridge", "visualizer"}
@@ -42,6 +43,7 @@ def read(path):
     except (yaml.YAMLError, UnicodeDecodeError) as error:
         raise WrongCall(f"{path} is not valid YAML: {error}") from error
     check_keys(content, FILE_KEYS, path)
+    check_texts(content, ("namespace",), path)
     if not isinstance(content.get("params_files", []), list):
         raise WrongCall(f"{path}: params_files is not a list of files but"
                         f" {content['params_files']!r}: write params_files: [my.yaml]")
@@ -50,13 +52,64 @@ def read(path):
     stages = content.get("stages")
     if not isinstance(stages, list) or not stages:
         raise WrongCall(f"{path} lists no stages: write stages: [{{component: map_server}}, ...]")
+    hosts = hosts_of(content, path)
     for number, stage in enumerate(stages, 1):
         check_stage(stage, f"{path}, stage {number}")
+        check_host(stage, hosts, f"{path}, stage {number}")
     return content
+
+
+def hosts_of(content, path):
+    """@return {name: interfaces, or "" if the environment says them}"""
+    hosts = content.get("hosts", {})
+    if not isinstance(hosts, dict) or not all(isinstance(name, str) for name in hosts):
+        raise WrongCall(f"{path}: hosts is not a map of names to interfaces: write hosts: "
+                        "{vehicle: 192.168.1.10, ground: 192.168.1.20}")
+    for name, interfaces in hosts.items():
+        if interfaces is not None and not isinstance(interfaces, str):
+            raise WrongCall(f"{path}: host {name} has interfaces {interfaces!r}: write IPv4 "
+                            "addresses of it with commas between, all, or nothing")
+    return {name: interfaces or "" for name, interfaces in hosts.items()}
+
+
+def check_host(stage, hosts, place):
+    if not hosts and "host" in stage:
+        raise WrongCall(f"{place} has a host, but the file has no hosts: write hosts: "
+                        f"{{{stage['host']}: 192.168.1.10}}")
+    if hosts and "host" not in stage:
+        raise WrongCall(f"{place} needs a host: one of {', '.join(hosts)}")
+    if hosts and stage["host"] not in hosts:
+        raise WrongCall(f"{place}: there is no host '{stage['host']}'"
+                        f"{nearest(stage['host'], hosts)} (hosts has {', '.join(hosts)})")
+
+
+def choose_host(content, path, host):
+    """@return the interfaces of the host that this launch is for; "" if the file does not say"""
+    hosts = hosts_of(content, path)
+    if not hosts and host:
+        raise WrongCall(f"--host {host}: {path} has no hosts, so all of it runs on one")
+    if hosts and not host:
+        raise WrongCall(f"{path} is for the hosts {', '.join(hosts)}: say with --host which of them "
+                        "this one is")
+    if host and host not in hosts:
+        raise WrongCall(f"--host {host}: {path} has no such host{nearest(host, hosts)} (it has "
+                        f"{', '.join(hosts)})")
+    if host and not any(stage["host"] == host for stage in content["stages"]):
+        raise WrongCall(f"--host {host}: {path} starts no stage on it")
+    return hosts.get(host, "")
+
+
+def check_texts(mapping, keys, place):
+    """These are names: no lists, maps, dates or nothing at all."""
+    for key in keys:
+        if key in mapping and (isinstance(mapping[key], bool)
+                               or not isinstance(mapping[key], (str, int))):
+            raise WrongCall(f"{place}: {key} is {mapping[key]!r}, not a name")
 
 
 def check_stage(stage, place):
     check_keys(stage, STAGE_KEYS, place)
+    check_texts(stage, ("component", "node", "name", "host"), place)
     if ("component" in stage) == ("command" in stage):
         raise WrongCall(f"{place} needs either a component or a command")
     if "command" in stage and not (isinstance(stage["command"], list) and stage["command"]):
@@ -93,9 +146,12 @@ class Program:
 
 
 class Plan:
-    """What to start: names, command lines, the nodes that each process has."""
+    """What to start: names, command lines, the nodes that each process has.
 
-    def __init__(self, content, path, prefix, extra):
+    @param host only programs of this host are started; "": all"""
+
+    def __init__(self, content, path, prefix, extra, host=""):
+        self.host = host
         self.folder = os.path.dirname(os.path.abspath(path))
         self.path = path
         self.container = os.path.join(prefix, "bin", "goshawk_container")
@@ -116,6 +172,9 @@ class Plan:
         return next((s.get("node", s["component"]) for s in self.stages
                      if s.get("component") in components), None)
 
+    def stages_with_nodes(self):
+        return [s for s in self.stages if "component" in s]
+
     def ros_args(self, stages):
         """What stands behind --ros-args for these components in one process."""
         arguments = ["-r", f"__ns:={self.namespace}"]
@@ -131,12 +190,13 @@ class Plan:
         return arguments + self.extra
 
     def programs(self):
-        """@return all programs, in their order; raises WrongCall for names that clash"""
-        components = [s for s in self.stages if "component" in s]
+        """@return the host's programs, in their order; raises WrongCall for names that clash"""
+        here = [(number, s) for number, s in enumerate(self.stages, 1)
+                if s.get("host", "") == self.host]
+        components = [s for _, s in here if "component" in s]
         groups = [components] if self.in_container and components else [[s] for s in components]
         programs = [self.component_program(group) for group in groups]
-        programs += [self.command_program(number, stage)
-                     for number, stage in enumerate(self.stages, 1) if "command" in stage]
+        programs += [self.command_program(number, s) for number, s in here if "command" in s]
         names = [p.name for p in programs]
         for name in names:
             if not NAME.fullmatch(name):

@@ -9,10 +9,12 @@ import sys
 import tempfile
 import time
 import unittest
+from random import Random
 
 SCRIPTS = pathlib.Path(__file__).resolve().parent.parent / "scripts"
 sys.path.insert(0, str(SCRIPTS))
 
+import launch  # noqa: E402
 import launch_file  # noqa: E402
 import stage_names  # noqa: E402
 import supervision  # noqa: E402
@@ -87,6 +89,130 @@ class LaunchFiles(Folder):
             with self.assertRaises(WrongCall) as refused:
                 self.programs("stages:\n" + text)
             self.assertIn(word, str(refused.exception))
+
+
+TWO_HOSTS = ("hosts: {vehicle: 10.0.0.2, ground: }\nstages:\n"
+             "  - {component: map_server, host: ground}\n"
+             "  - {component: tracker, host: vehicle}\n"
+             "  - {command: [ls], host: ground}\n")
+
+
+class Hosts(Folder):
+    def content(self, text):
+        path = self.folder / "test.yaml"
+        path.write_text(text)
+        return launch_file.read(path), path
+
+    def names(self, text, host):
+        content, path = self.content(text)
+        return [p.name for p in launch_file.Plan(content, path, "/p", [], host).programs()]
+
+    def test_each_host_starts_its_own(self):
+        self.assertEqual(self.names(TWO_HOSTS, "vehicle"), ["tracker"])
+        self.assertEqual(self.names(TWO_HOSTS, "ground"), ["map_server", "ls"])
+        self.assertEqual(self.names("container: true\n" + TWO_HOSTS, "ground"), ["container", "ls"])
+
+    def test_a_host_has_the_interfaces_of_the_file(self):
+        content, path = self.content(TWO_HOSTS)
+        self.assertEqual(launch_file.choose_host(content, path, "vehicle"), "10.0.0.2")
+        self.assertEqual(launch_file.choose_host(content, path, "ground"), "")
+
+    def test_the_map_and_the_plant_are_known_on_every_host(self):
+        content, path = self.content(TWO_HOSTS)
+        plan = launch_file.Plan(content, path, "/p", [], "vehicle")
+        self.assertEqual(plan.node_of({"map_server"}), "map_server")
+
+    def test_a_stage_on_a_wrong_host_is_refused(self):
+        for text, words in (
+                ("hosts: {a: }\nstages:\n  - component: tracker\n", "needs a host: one of a"),
+                ("stages:\n  - {component: tracker, host: a}\n", "the file has no hosts"),
+                ("hosts: {vehicle: }\nstages:\n  - {component: tracker, host: vehicel}\n",
+                 "there is no host 'vehicel'; did you mean vehicle?"),
+                ("hosts: [a]\nstages:\n  - {component: tracker, host: a}\n", "hosts is not a map"),
+                ("hosts: {a: 5}\nstages:\n  - {component: tracker, host: a}\n", "interfaces 5")):
+            with self.assertRaises(WrongCall) as refused:
+                self.content(text)
+            self.assertIn(words, str(refused.exception))
+
+    def test_a_launch_for_a_wrong_host_is_refused(self):
+        content, path = self.content(TWO_HOSTS)
+        spare, _ = self.content(TWO_HOSTS.replace("{vehicle", "{spare: , vehicle"))
+        for of, host, words in ((content, "", "say with --host which of them"),
+                                (content, "grond", "did you mean ground?"),
+                                (spare, "spare", "starts no stage on it"),
+                                (self.content("stages:\n  - component: tracker\n")[0], "ground",
+                                 "has no hosts")):
+            with self.assertRaises(WrongCall) as refused:
+                launch_file.choose_host(of, path, host)
+            self.assertIn(words, str(refused.exception))
+
+
+class FuzzedFiles(Folder):
+    """Any text as a launch file: a plan, or a sentence. GOSHAWK_FUZZ_S: for so many seconds."""
+
+    SEEDS = [TWO_HOSTS, "namespace: /u\ndomain: 5\ncontainer: true\nparams_files: [my.yaml]\n"
+             "stages:\n  - component: tracker\n    node: t\n    params: {a: [1, 2.5], b: {c: x}}\n"
+             "    remap: {path: p}\n    realtime: 10\n    essential: true\n"
+             "  - command: [ls, --fast]\n    name: mine\n"]
+    PIECES = ["null", "[]", "{}", "-1", "1e999", "true", "&a", "*a", "!!python/object:os.system x",
+              "'", '"', "\t", "\0", "\ud7ff", ": ", "- ", "<<: *a", "stages:", "host:", "99999999999",
+              "2001-01-01", "!!binary aGk=", "? ", "|", "%", "{a: {a: {a: }}}", ".nan"]
+
+    def mutated(self, random):
+        text = random.choice(self.SEEDS)
+        for _ in range(random.randint(1, 6)):
+            at, upto = sorted((random.randint(0, len(text)), random.randint(0, len(text))))
+            piece = random.choice([*self.PIECES, text[at:upto], chr(random.randint(0, 300))])
+            text = text[:at] + piece + text[min(upto, at + random.randint(0, 20)):]
+        return text
+
+    def test_a_file_is_understood_or_refused_with_a_sentence(self):
+        random = Random(1)
+        path = self.folder / "fuzzed.yaml"
+        end = time.monotonic() + float(os.environ.get("GOSHAWK_FUZZ_S", "0"))
+        tries = 0
+        while tries < 1000 or time.monotonic() < end:
+            tries += 1
+            text = self.mutated(random)
+            path.write_text(text)
+            try:
+                content = launch_file.read(path)
+                host = random.choice(["", *launch_file.hosts_of(content, path)])
+                launch_file.choose_host(content, path, host)
+                launch.domain_of(content)
+                plan = launch_file.Plan(content, path, "/prefix", [], host)
+                programs = plan.programs()
+                supervision.configuration(programs)
+                for program in programs:
+                    shlex.join(program.command)
+            except WrongCall as refused:
+                self.assertTrue(str(refused))
+            except Exception as bug:  # noqa: BLE001: whatever else is a traceback for a user
+                self.fail(f"{bug!r} for the launch file:\n{text}")
+
+
+class Journals(Folder):
+    def arguments(self, text, extra=()):
+        plan = self.plan(text, extra)
+        launch.keep_journal(plan, str(self.folder))
+        return plan.extra
+
+    def test_a_map_server_gets_a_journal_of_this_flight(self):
+        old = self.folder / "map.journal"
+        old.write_text("of another flight")
+        self.assertEqual(self.arguments("stages:\n  - {component: map_server, node: maps}\n"),
+                         ["-p", f"maps:journal_file:={old}"])
+        self.assertFalse(old.exists())
+
+    def test_one_that_the_file_or_the_call_names_is_left_alone(self):
+        own = self.folder / "map.journal"
+        own.write_text("mine")
+        self.assertEqual(self.arguments("stages:\n  - component: map_server\n"
+                                        f"    params: {{journal_file: {own}}}\n"), [])
+        words = ["-p", f"map_server:journal_file:={own}"]
+        self.assertEqual(self.arguments("stages:\n  - component: map_server\n", words), words)
+        self.assertEqual(self.arguments("stages:\n  - component: tracker\n"), [])
+        self.assertEqual(own.read_text(), "mine")
 
 
 class Names(unittest.TestCase):

@@ -42,7 +42,8 @@ class ForeignSearch {
     ++requests_;
     if (fault_ == Fault::silent && requests_ % 5 == 0) return;
     if (fault_ == Fault::believes_all) return answer(m, {Vec3(0, 0, 0), Vec3(1, 0, 0)});
-    const auto request = open_request(m, node_.now_ns(), reporter_, {});
+    const std::int64_t now_ns = node_.monotonic_ns();
+    const auto request = open_request(m, now_ns, now_ns, reporter_, {});
     if (!request) return;
     const Vec3& start = request->start.position;
     const Vec3& goal = request->goal.position;

@@ -3,16 +3,20 @@
 #include <algorithm>
 #include <fstream>
 #include <map>
+#include <set>
 #include <sstream>
 
 #include "goshawk/conversions/geometry.hpp"
+#include "goshawk/conversions/status.hpp"
 #include "goshawk/introspection/session.hpp"
+#include "goshawk_msgs.h"
 #include "nav_msgs.h"
 
 namespace goshawk::introspection {
 namespace {
 
 constexpr std::size_t kStamps = 20;  // messages whose age is measured
+constexpr double kReports_s = 1.0;   // for latched reports to come
 
 void add(std::vector<Finding>& all, std::vector<Finding> more) {
   std::ranges::move(more, std::back_inserter(all));
@@ -69,6 +73,35 @@ std::vector<Finding> check_odometry(Session& session, double timeout_s) {
   return findings;
 }
 
+std::uint64_t refused_datagrams(const goshawk_msgs::msg::StageReport& m) {
+  for (const auto& counter : m.counters()) {
+    if (counter.name() == conversions::kRefusedDatagrams) return std::uint64_t(counter.value());
+  }
+  return 0;
+}
+
+// What the stages refused, as they have reported it.
+std::vector<Finding> check_refusals(Session& session, double timeout_s) {
+  namespace msg = goshawk_msgs::msg;
+  std::set<std::string> topics;
+  for (const auto& e : session.context().endpoints()) {
+    if (e.writer && e.type == "goshawk_msgs/msg/StageReport") topics.insert(e.topic);
+  }
+  std::map<std::string, msg::StageReport> newest;  // by node
+  for (const auto& topic : topics) {
+    session.node().subscribe<msg::StageReport>(
+        topic, runtime::Qos::latched(20), [&newest](const msg::StageReport& m, const auto&) {
+          if (refused_datagrams(m) > 0) newest[m.node()] = m;
+        });
+  }
+  if (!topics.empty()) session.wait_for(std::min(timeout_s, kReports_s), [] { return false; });
+  std::vector<Finding> findings;
+  for (const auto& [node, report] : newest) {
+    findings.push_back(check_refused(node, refused_datagrams(report), report.message()));
+  }
+  return findings;
+}
+
 bool has_node(const runtime::Context& context, const std::string& name) {
   return std::ranges::any_of(context.participants(), [&](const auto& p) {
     return std::ranges::any_of(p.nodes, [&](const auto& n) { return n.ends_with("/" + name); });
@@ -94,6 +127,7 @@ std::vector<Finding> examine(double timeout_s) {
   findings.push_back(company(context.participants(), context.domain()));
   add(findings, check_topics(context.participants(), context.endpoints()));
   add(findings, check_odometry(**session, timeout_s));
+  add(findings, check_refusals(**session, timeout_s));
   add(findings, clock.findings());
   return findings;
 }

@@ -133,4 +133,12 @@ std::vector<Finding> check_topics(const std::vector<ParticipantInfo>& participan
   return findings;
 }
 
+Finding check_refused(const std::string& node, std::uint64_t count, const std::string& message) {
+  return {"node " + node, Level::warning, message,
+          count == 1 ? "somebody sent what is no message of DDS, or in another's name"
+                     : "somebody sends what are no messages of DDS, or in another's name",
+          "find the program at that address and port (ss -unp); on a network, close the ports of DDS "
+          "to others, or use DDS Security (docs/security.md)"};
+}
+
 }  // namespace goshawk::introspection

@@ -178,7 +178,8 @@ TEST(Doctor, says_of_all_that_is_not_fine_why_it_matters_and_what_mends_it) {
   add(check_ports(102, false));
   add(ClockWatch().findings());
   add(check_topics(kTwo, {writer(false, false), reader(true, true)}));
-  add({check_clock_jump(1.0), check_stamps("/odom", {-1.0}), check_stamps("/odom", {9.0})});
+  add({check_refused("/tracker", 3, "3 datagrams were refused"), check_clock_jump(1.0),
+       check_stamps("/odom", {-1.0}), check_stamps("/odom", {9.0})});
   for (const auto& f : all) {
     EXPECT_FALSE(f.message.empty()) << f.about;
     if (f.level == Level::fine) continue;

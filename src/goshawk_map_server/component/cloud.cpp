@@ -32,6 +32,7 @@ Result<std::vector<Vec3>> points_of(const sensor_msgs::msg::PointCloud2& m) {
   if (m.is_bigendian()) {
     return fail(ErrorCode::invalid_input, "the cloud is big-endian: send it little-endian");
   }
+  if (m.width() == 0 || m.height() == 0) return std::vector<Vec3>{};  // the sensor saw nothing
   const auto offsets = offsets_of(m);
   if (!offsets) return offsets.error();
   const std::size_t row_points = std::size_t(m.width()) * m.point_step();

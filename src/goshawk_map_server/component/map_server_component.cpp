@@ -5,6 +5,7 @@
 
 #include <optional>
 
+#include "beginning.hpp"
 #include "cloud.hpp"
 #include "goshawk/conversions/grid.hpp"
 #include "goshawk/conversions/vehicle.hpp"
@@ -24,30 +25,11 @@ namespace msg = goshawk_msgs::msg;
 // How often, at the most, the whole map is published anew for late joiners while scans come in.
 constexpr double kWholeMapPeriod_s = 1.0;
 
-Box box_of(const Config& c) {
-  return {Vec3(c.box_x_min_m, c.box_y_min_m, c.box_z_min_m),
-          Vec3(c.box_x_max_m, c.box_y_max_m, c.box_z_max_m)};
-}
-
-LiveMap make_map(const Config& config, Node& node) {
-  auto map = [&]() -> Result<LiveMap> {
-    if (config.map_file.empty()) {
-      if (!config.use_box) {
-        return fail(ErrorCode::invalid_parameter,
-                    "map_server has neither a map_file nor use_box: name a map, or the box that "
-                    "begins as unknown space");
-      }
-      return LiveMap::unknown_space(box_of(config), config.resolution_m, growth(config),
-                                    config.max_voxels);
-    }
-    auto source = load_map(config.map_file, load_options(config));
-    if (!source) return source.error();
-    for (const std::string& note : source->notes) node.log().warn("{}: {}", config.map_file, note);
-    return LiveMap::from_source(*std::move(source), voxelize_options(config), growth(config),
-                                std::int64_t{config.max_tree_mb} * 1'000'000);
-  }();
-  if (!map) throw StartupFault(map.error());
-  return *std::move(map);
+Beginning begin(const Config& config, Node& node) {
+  auto beginning = begin_map(config);
+  if (!beginning) throw StartupFault(beginning.error());
+  for (const std::string& note : beginning->notes) node.log().warn("{}: {}", config.map_file, note);
+  return *std::move(beginning);
 }
 
 /// A map file, and cloud_in -> map/voxels, map/voxels/updates, octomap_binary
@@ -59,8 +41,9 @@ class MapServerComponent : public Component {
           config_ = c;  // max_range_m of the scans to come
           return success();
         })),
-        map_(make_map(config_, node)),
-        reporter_(node, StageRole::map_server, "octomap"),
+        beginning_(begin(config_, node)),
+        map_(std::move(beginning_.map)),
+        reporter_(node, StageRole::map_server, "bricks"),
         voxels_(node.advertise<msg::VoxelGrid>("map/voxels", Qos::latched())),
         updates_(
             node.advertise<msg::VoxelGridUpdate>("map/voxels/updates", Qos::reliable_last(50))),
@@ -74,13 +57,19 @@ class MapServerComponent : public Component {
         });
     node.every(kWholeMapPeriod_s, [this] {
       if (changed_) publish_whole();
+      tell_of_journal();
     });
     publish_whole();
     malloc_trim(0);  // what loading and publishing took for a moment; glibc may keep it for ever
-    const auto& grid = map_.grid();
-    reporter_.ready(fmt::format("serves {} voxels of {:.3g} m, obstacles inflated by {:.3g} m",
-                                to_text(grid.geometry.size), grid.geometry.resolution_m,
-                                grid.inflation_m));
+    const GridGeometry geometry = map_.geometry();
+    reporter_.ready(fmt::format("serves {} voxels of {:.3g} m, obstacles inflated by {:.3g} m{}",
+                                to_text(geometry.size), geometry.resolution_m,
+                                map_.growth().inflation_m,
+                                beginning_.bricks == 0
+                                    ? ""
+                                    : fmt::format("; {} bricks are from its journal",
+                                                  beginning_.bricks)));
+    if (beginning_.journal_fault) reporter_.fault(*beginning_.journal_fault);
   }
 
  private:
@@ -90,6 +79,7 @@ class MapServerComponent : public Component {
       msg::VoxelGrid m;  // freed at once: the writer keeps the bytes for late joiners
       m.header(conversions::make_header(node_.now_ns()));
       VoxelGrid published = map_.grid();  // shares its bits
+      published.version += beginning_.versions_before;
       if (!config_.publish_raw) published.raw = {};
       conversions::fill_msg(published, m);
       reporter_.send(voxels_, m);
@@ -100,7 +90,7 @@ class MapServerComponent : public Component {
     m.header(conversions::make_header(node_.now_ns()));
     m.binary(true);
     m.id("OcTree");
-    m.resolution(map_.grid().geometry.resolution_m);
+    m.resolution(map_.geometry().resolution_m);
     m.data().assign(bytes->begin(), bytes->end());
     reporter_.send(octomap_, m);
   }
@@ -108,11 +98,29 @@ class MapServerComponent : public Component {
   void on_cloud(const sensor_msgs::msg::PointCloud2& m) {
     auto points = points_in_map(m);
     if (!points) return reporter_.fault(points.error());
-    const Vec3 origin = vehicle_ ? vehicle_->position_map : Vec3::Zero();
-    auto result = map_.insert_scan(*points, origin, config_.max_range_m);
-    if (!result) return reporter_.fault(result.error());
-    publish_update(result->update);
+    if (points->empty()) return;
+    const Vec3 origin = vehicle_->position_map;
+    const Scan scan{.points_map = *points,
+                    .origins_map = {&origin, 1},
+                    .max_range_m = config_.max_range_m,
+                    .body_path_map = {&origin, 1},
+                    .body_radius_m = config_.body_radius_m};
+    if (auto status = map_.insert_scan(scan, result_); !status) {
+      return reporter_.fault(status.error());
+    }
+    GridUpdate& update = result_.update;
+    update.from_version += beginning_.versions_before;
+    update.to_version += beginning_.versions_before;
+    if (beginning_.journal) {
+      beginning_.journal->add(update.to_version, journal_bricks(update, map_.geometry()));
+    }
+    publish_update(update);
     changed_ = true;
+  }
+
+  void tell_of_journal() {
+    if (!beginning_.journal) return;
+    if (const auto fault = beginning_.journal->take_fault()) reporter_.fault(*fault);
   }
 
   // Clouds come in the body's frame, turned by the newest odometry, or in the map's.
@@ -142,7 +150,9 @@ class MapServerComponent : public Component {
 
   Node& node_;
   Config config_;
+  Beginning beginning_;  // without its map
   LiveMap map_;
+  ScanResult result_;  // its memory is used again
   StageReporter reporter_;
   Publisher<msg::VoxelGrid> voxels_;
   Publisher<msg::VoxelGridUpdate> updates_;

@@ -56,7 +56,8 @@ class PathSearchComponent : public Component {
   /// What is left of the request's deadline.
   StopSignal stop_of(const PlanRequest& request) const {
     if (request.deadline_s == 0.0) return {};
-    return StopSignal::after(request.deadline_s - double(node_.now_ns() - request.stamp_ns) * 1e-9);
+    const double age_s = double(node_.monotonic_ns() - request.stamp_ns) * 1e-9;
+    return StopSignal::after(request.deadline_s - age_s);
   }
 
   void report(std::uint64_t request_id, const PlannedPath& path, Timing timing) {

@@ -71,7 +71,10 @@ void use_udp(dds::DomainParticipantQos& qos, const std::string& interfaces) {
   qos.transport().user_transports.push_back(udp);
   if (interfaces == "all") return;
   const bool loopback = interfaces == "loopback";
-  udp->interfaceWhiteList = loopback ? std::vector<std::string>{"127.0.0.1"} : split(interfaces);
+  // Always loopback too: Fast DDS reaches other processes of this host there, a discovery server
+  // for one, whichever of the host's addresses they name.
+  if (!loopback) udp->interfaceWhiteList = split(interfaces);
+  udp->interfaceWhiteList.push_back("127.0.0.1");
   if (!loopback) return;
   rtps::Locator_t peer;
   peer.kind = LOCATOR_KIND_UDPv4;
@@ -109,8 +112,13 @@ dds::DomainParticipantQos participant_qos(const ContextOptions& options,
   dds::DomainParticipantQos qos = factory->get_default_participant_qos();
   if (std::getenv("FASTRTPS_DEFAULT_PROFILES_FILE") == nullptr) use_udp(qos, options.interfaces);
   filter_transports(qos.transport(), {refusals, options.tap});
-  // A killed process is forgotten after 3 s instead of 20, a restarted one met at once.
   auto& discovery = qos.wire_protocol().builtin.discovery_config;
+  // A client hears only of what it writes and reads, but `goshawk node list` asks for all.
+  if (!rtps::ros_discovery_server_env().empty() &&
+      rtps::load_environment_server_info(discovery.m_DiscoveryServers)) {
+    discovery.discoveryProtocol = rtps::DiscoveryProtocol_t::SUPER_CLIENT;
+  }
+  // A killed process is forgotten after 3 s instead of 20, a restarted one met at once.
   discovery.leaseDuration = {3, 0};
   discovery.leaseDuration_announcementperiod = {0, 500'000'000};
   discovery.initial_announcements.count = 5;

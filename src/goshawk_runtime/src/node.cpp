@@ -150,6 +150,11 @@ void Node::Impl::call(const Node& node, const std::string& what, const Callback&
   }
 }
 
+std::int64_t Node::Impl::waited_ns(const dds::SampleInfo& info) const {
+  if (time.on) return 0;  // Fast DDS stamps with the system's clock
+  return std::max<std::int64_t>(0, SystemClock().now_ns() - info.reception_timestamp.to_ns());
+}
+
 int Node::Impl::take_some(const Node& node, Subscription& s) {
   dds::SampleInfo info;
   Sample sample{s.type.get(), s.object};
@@ -167,7 +172,7 @@ int Node::Impl::take_some(const Node& node, Subscription& s) {
       continue;
     }
     call(node, s.topic, s.callback, s.object,
-         MessageInfo{node.now_ns(), info.source_timestamp.to_ns()});
+         MessageInfo{node.now_ns(), waited_ns(info), info.source_timestamp.to_ns()});
     if (stopping) return i + 1;
   }
   return kMostAtOnce;
@@ -208,6 +213,14 @@ std::int64_t Node::now_ns() const {
 
 std::int64_t Node::monotonic_ns() const {
   return impl_->time.on ? impl_->time.now_ns : clock_->monotonic_ns();
+}
+
+std::uint64_t Node::refused_datagrams() const {
+  return impl_->context.refusals->count();
+}
+
+std::string Node::last_refusal() const {
+  return impl_->context.refusals->last();
 }
 
 std::string Node::full_name() const {

@@ -106,6 +106,8 @@ struct Node::Impl {
   /// @return whether a turn, or an answer to one, came within timeout_s
   bool wait_for_turn(Subscription& subscription, double timeout_s);
   void run_due_timers(const Node& node);
+  /// [ns] since a message arrived, while the node's thread was busy
+  std::int64_t waited_ns(const dds::SampleInfo& info) const;
   /// @return messages taken; limited, so that a flood on one topic does not starve the others
   int take_some(const Node& node, Subscription& subscription);
   /// One pass: some messages of every subscription, then what was deferred.

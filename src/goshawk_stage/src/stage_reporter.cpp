@@ -1,6 +1,9 @@
 #include "goshawk/stage/stage_reporter.hpp"
 
+#include <fmt/format.h>
 #include <spdlog/logger.h>
+
+#include <bit>
 
 #include "goshawk/conversions/geometry.hpp"
 #include "goshawk/conversions/status.hpp"
@@ -10,6 +13,7 @@ namespace goshawk::stage {
 namespace {
 
 constexpr std::int64_t kComplainEvery_ns = 1'000'000'000;
+constexpr double kRefusalsEvery_s = 1.0;
 
 }  // namespace
 
@@ -21,6 +25,18 @@ StageReporter::StageReporter(runtime::Node& node, StageRole role, std::string im
   report_.stage(conversions::to_msg(role));
   report_.node(node.full_name());
   report_.implementation(std::move(implementation));
+  node.every(kRefusalsEvery_s, [this] { tell_of_refusals(); });
+}
+
+// As the log has them: after the 1st, 2nd, 4th, 8th.
+void StageReporter::tell_of_refusals() {
+  const std::uint64_t count = node_.refused_datagrams();
+  if (std::bit_width(count) == std::bit_width(refused_)) return;
+  refused_ = count;
+  publish(0, ErrorCode::invalid_input,
+          fmt::format("{} malformed or forged datagrams were refused so far; the last one: {}", count,
+                      node_.last_refusal()),
+          {}, {{conversions::kRefusedDatagrams, double(count)}});
 }
 
 void StageReporter::set_implementation(std::string implementation) {

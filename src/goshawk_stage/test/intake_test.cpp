@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <cstdlib>
+
 #include "two_nodes.hpp"
 
 namespace goshawk::stage {
@@ -73,7 +75,7 @@ TEST_F(Requests, ThatAreGoodAreHandedOutInOrderAndTheOthersAreReported) {
   bad.limits().v_max(-1.0);
   ASSERT_TRUE(requests.publish(request(1)));
   ASSERT_TRUE(requests.publish(bad));
-  ASSERT_TRUE(requests.publish(request(3, 1.0)));  // too late two seconds on
+  ASSERT_TRUE(requests.publish(request(3, 1e-9)));  // it has passed when the stage looks
   ASSERT_TRUE(requests.publish(request(4)));
   nodes_.clock->set(12 * kSecond);
   ASSERT_TRUE(nodes_.spin_until([&] { return taken_.size() + reports_.size() == 4; }));
@@ -140,6 +142,59 @@ TEST_F(Requests, InsideOtherMessagesAreTakenInWithThem) {
   ASSERT_TRUE(paths.publish(path));
   ASSERT_TRUE(nodes_.spin_until([&] { return !taken_.empty(); }));
   EXPECT_THAT(taken_, ElementsAre(5));
+}
+
+TEST(RequestArrivals, KeepTheFirstOfEachRequest) {
+  RequestArrivals arrivals;
+  msg::PlanRequest a;
+  a.id(7);
+  msg::PlanRequest of_another_asker = a;
+  of_another_asker.header().stamp().sec(5);
+  EXPECT_EQ(arrivals.note(a, 100), 100);
+  EXPECT_EQ(arrivals.note(of_another_asker, 200), 200);
+  EXPECT_EQ(arrivals.note(a, 300), 100);
+  for (std::uint64_t id = 100; id < 200; ++id) {
+    msg::PlanRequest other;
+    other.id(id);
+    arrivals.note(other, 400);
+  }
+  EXPECT_EQ(arrivals.note(a, 500), 500) << "memory is bounded: the oldest are forgotten";
+}
+
+// The asker's clock is of no account, and time counts from the first that is heard of a request.
+TEST_F(Requests, HaveTheirDeadlineFromTheirArrivalWhateverTheAskersClockSays) {
+  const Intake<msg::Path> intake(nodes_.stage, reporter_, "path",
+                                 [&](const msg::Path&, const PlanRequest& r, Timing) {
+                                   EXPECT_LT(std::abs(r.stamp_ns - 10 * kSecond), 600 * kSecond);
+                                   taken_.push_back(r.id);
+                                 });
+  const auto paths = nodes_.other.advertise<msg::Path>("path", runtime::Qos::reliable_last());
+  const auto requests =
+      nodes_.other.advertise<msg::PlanRequest>("plan_request", runtime::Qos::reliable_last());
+  ASSERT_TRUE(nodes_.spin_until([&] { return paths.matched() > 0 && requests.matched() > 0; }));
+  const auto stamped = [&](std::uint64_t id, std::int64_t ahead_ns) {
+    auto m = request(id, 60.0);
+    m.header().stamp(conversions::to_stamp(10 * kSecond + ahead_ns));
+    return m;
+  };
+  msg::Path ahead, behind, late;
+  ahead.request(stamped(1, 3600 * kSecond));
+  behind.request(stamped(2, -3600 * kSecond));
+  late.request(stamped(3, 0));
+  ASSERT_TRUE(requests.publish(late.request()));
+  ASSERT_TRUE(requests.wait_acknowledged(10.0));
+  nodes_.stage.spin_some(0.0);
+  nodes_.clock->set(10 * kSecond);
+  ASSERT_TRUE(paths.publish(ahead));
+  ASSERT_TRUE(nodes_.spin_until([&] { return taken_.size() == 1; }));
+  ASSERT_TRUE(paths.publish(behind));
+  ASSERT_TRUE(nodes_.spin_until([&] { return taken_.size() == 2; }));
+  nodes_.clock->set(71 * kSecond);
+  ASSERT_TRUE(paths.publish(late));
+  ASSERT_TRUE(nodes_.spin_until([&] { return !reports_.empty(); }));
+  EXPECT_THAT(taken_, ElementsAre(1, 2));
+  EXPECT_EQ(reports_[0].request_id(), 3U);
+  EXPECT_EQ(reports_[0].code(), "deadline_exceeded");
 }
 
 }  // namespace

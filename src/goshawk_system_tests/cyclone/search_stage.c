@@ -106,10 +106,9 @@ static bool finite_state(const goshawk_msgs_msg_FlatState* s) {
 }
 
 // Refuses a bad request. @return whether it is good
-static bool check(dds_entity_t reports, const Request* r) {
+static bool check(dds_entity_t reports, const Request* r, dds_time_t heard_ns) {
   const goshawk_msgs_msg_Limits* l = &r->limits;
-  const double asked_s = r->header.stamp.sec + 1e-9 * r->header.stamp.nanosec;
-  const double now_s = 1e-9 * (double)dds_time();
+  const double waited_s = 1e-9 * (double)(dds_time() - heard_ns);
   const char *code = "ok", *message = "";
   if (strcmp(r->header.frame_id, "map") != 0) {
     code = "wrong_frame", message = "the request must be in frame map";
@@ -121,7 +120,7 @@ static bool check(dds_entity_t reports, const Request* r) {
   } else if (!(l->v_max > 0.0) || !(l->a_max > 0.0) ||
              l->norm > goshawk_msgs_msg_Limits_Constants_NORM_HORIZONTAL_VERTICAL) {
     code = "invalid_limits", message = "limits must be above zero, their norm 0, 1 or 2";
-  } else if (r->deadline > 0.0 && now_s > asked_s + r->deadline) {
+  } else if (r->deadline > 0.0 && waited_s > r->deadline) {
     code = "deadline_exceeded", message = "the deadline had passed when the request came";
   }
   if (strcmp(code, "ok") != 0) report(reports, r, code, message);
@@ -130,7 +129,7 @@ static bool check(dds_entity_t reports, const Request* r) {
 
 static void answer(dds_entity_t paths, dds_entity_t reports, const Grid* g, const Request* r) {
   const dds_time_t begin_ns = dds_time();
-  if (!check(reports, r)) return;
+  if (!check(reports, r, begin_ns)) return;
   if (g == NULL) return report(reports, r, "no_map", "no map has come yet");
   const long start = voxel_of(g, r->start.position);
   const long goal = voxel_of(g, r->goal.position);

@@ -152,12 +152,128 @@ class LiveMap(MapCase):
             told = self.send_cloud(bad, lambda: first_with(
                 reports.lines()[since:], lambda r: word in r["message"]))
             self.assertEqual(told["code"], code, f"{bad}")
-        # What has nothing to say changes nothing.
-        for nothing in (cloud([], width=0, height=4_000_000_000, row_step=0),
+        # What has nothing to say changes nothing, and is no fault: sensors see nothing at times.
+        since = len(reports.lines())
+        for nothing in (cloud([]), cloud([], fields=[]), cloud([], width=0, height=4_000_000_000, row_step=0),
                         cloud([(math.nan,) * 3])):
             self.tell("cloud_in", "sensor_msgs/msg/PointCloud2", nothing)
         before = self.late_version()
         self.send_cloud(cloud(good), lambda: self.late_version() > before)
+        self.assertEqual([r for r in reports.lines()[since:] if r["code"] != "ok"], [])
+        self.assertTrue(server.alive())
+
+
+class JournalOfTheMap(MapCase):
+    """A map server that is killed while scans come in goes on with the map that it had."""
+
+    BOX = ["use_box:=true", "unknown:=free", "resolution_m:=0.2", "radius_m:=0.15", "margin_m:=0.05",
+           "box_x_max_m:=12.0", "box_y_max_m:=10.0", "box_z_max_m:=4.0", "publish_raw:=true"]
+
+    def setUp(self):
+        super().setUp()
+        self.journal = self.sandbox.folder / "map.journal"
+        self.parameters = [*self.BOX, f"journal_file:={self.journal}"]
+        self.updates = self.echo("map/voxels/updates")
+
+    def whole(self):
+        return json.loads(self.sandbox.goshawk("topic", "echo", "map/voxels", "--once", "--json",
+                                               "--timeout", "30", timeout_s=60).out)
+
+    def scan(self, number):
+        """A scan of 40 points from a place that moves, as in flight."""
+        angles = [0.31 * k + 0.7 * number for k in range(40)]
+        here = (2.0 + 0.2 * (number % 40), 5.0 + 2.0 * math.sin(0.3 * number), 2.0)
+        points = [(here[0] + 3.0 * math.cos(a), here[1] + 3.0 * math.sin(a), 1.0 + 0.05 * k)
+                  for k, a in enumerate(angles)]
+        self.tell("odom", "nav_msgs/msg/Odometry", odometry(here))
+        self.tell("cloud_in", "sensor_msgs/msg/PointCloud2", cloud(points))
+
+    def map_while_flying(self, scans):
+        for number in range(scans):
+            self.scan(number)
+        self.wait_line(self.updates, lambda u: u["bricks"])
+
+    @staticmethod
+    def apply(grid, update):
+        """The grid after an update, by this test's own reading of the messages."""
+        words_x = (grid["size_x"] + 63) // 64
+        for brick in update["bricks"]:
+            for row in range(64):
+                y, z = 8 * brick["brick_y"] + row % 8, 8 * brick["brick_z"] + row // 8
+                if y < grid["size_y"] and z < grid["size_z"]:
+                    at = (z * grid["size_y"] + y) * words_x + brick["word_x"]
+                    for field in ("grown", "known", "raw"):
+                        grid[field][at] = brick[field][row]
+        grid["version"] = update["to_version"]
+
+    def voxels(self, grid):
+        """{field: bits of every voxel}, without what pads the rows."""
+        words_x = (grid["size_x"] + 63) // 64
+        keep = [(1 << min(64, grid["size_x"] - 64 * w)) - 1 for w in range(words_x)]
+        return {field: [int(word) & keep[k % words_x] for k, word in enumerate(grid[field])]
+                for field in ("grown", "known", "raw")}
+
+    def test_after_kill_9_every_voxel_is_as_it_was(self):
+        server, reports = self.run_server(*self.parameters)
+        grid = self.whole()
+        self.map_while_flying(30)
+        server.process.kill()
+        server.process.wait()
+        reports.stop()
+        _, again = self.run_server(*self.parameters)
+        restored = self.whole()
+        version = restored["version"] - 1001
+        seen = self.updates.lines()
+        note(f"killed at version {seen[-1]['to_version']}, restored from version {version}")
+        for update in seen:
+            if update["from_version"] >= grid["version"] and update["to_version"] <= version:
+                self.apply(grid, update)
+        self.assertEqual(grid["version"], version, "the journal has a version that nobody saw")
+        self.assertGreater(sum(bin(w).count("1") for w in self.voxels(grid)["known"]), 500)
+        self.assertEqual(self.voxels(restored), self.voxels(grid))
+        ready = first_with(again.lines(), lambda r: "bricks are from its journal" in r["message"])
+        self.assertIsNotNone(ready, again.out())
+
+    def test_a_damaged_journal_is_told_and_what_is_whole_is_used(self):
+        server, reports = self.run_server(*self.parameters)
+        self.map_while_flying(10)
+        server.process.kill()
+        server.process.wait()
+        reports.stop()
+        content = bytearray(self.journal.read_bytes())
+        self.assertGreater(len(content), 5000)
+        content[-1500] ^= 1
+        self.journal.write_bytes(content)
+        _, again = self.run_server(*self.parameters)
+        told = self.wait_line(again, lambda r: r["code"] == "map_malformed")
+        self.assertIn("damaged or cut off", told["message"])
+        self.assertGreater(sum(bin(int(w)).count("1") for w in self.whole()["known"]), 0)
+
+    def test_a_file_that_is_no_journal_is_put_aside(self):
+        self.journal.write_text("a letter, which must not be lost" * 9)
+        _, reports = self.run_server(*self.parameters)
+        told = self.wait_line(reports, lambda r: r["code"] == "map_malformed")
+        aside = pathlib.Path(f"{self.journal}.refused")
+        self.assertIn(str(aside), told["message"])
+        self.assertIn("a letter", aside.read_text())
+
+    def test_a_disk_that_is_full_is_told_and_the_map_goes_on(self):
+        """A limit of the process stands for the disk: writes beyond it fail."""
+        script = ("import os, resource, signal, sys\n"
+                  "signal.signal(signal.SIGXFSZ, signal.SIG_IGN)\n"
+                  "resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))\n"
+                  "os.execv(sys.argv[1], sys.argv[1:])\n")
+        options = [word for p in self.parameters for word in ("-p", p)]
+        server = self.sandbox.start("/usr/bin/python3", "-c", script, GOSHAWK, "run", "map_server",
+                                    "--ros-args", *options)
+        reports = self.echo("stage_report")
+        self.wait_line(reports, lambda r: r["code"] == "ok" and node_of(r) == "map_server", 60.0)
+        self.map_while_flying(10)
+        told = self.wait_line(reports, lambda r: r["code"] == "io_failed")
+        self.assertIn("is lost if the map server dies", told["message"])
+        before = len(self.updates.lines())
+        self.map_while_flying(20)
+        self.assertTrue(until(lambda: len(self.updates.lines()) > before, 20.0))
         self.assertTrue(server.alive())
 
 

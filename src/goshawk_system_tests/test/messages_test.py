@@ -93,7 +93,7 @@ class BadMessages(StackTest):
                                          "velocity": point(0, "inf", 0)}}, "invalid_input"),
                 ("outside", {"goal": {"position": point(1e12, 0, 1)}}, "goal_outside"),
                 ("start outside", {"start": {"position": point(0, -50, 1)}}, "start_outside"),
-                ("deadline", {"deadline": 1e-3}, "deadline_exceeded"),
+                ("deadline", {"deadline": 1e-9}, "deadline_exceeded"),
                 ("NaN deadline", {"deadline": "nan"}, "invalid_input")]:
             with self.subTest(name):
                 report = self.expect_report("plan_request", kind, request(self.number, **changes),

@@ -13,10 +13,10 @@ from harness import GOSHAWK, STAGES, Publisher, Sandbox, SystemTest, node_of, un
 class Launch:
     """`goshawk launch FILE` with JSON events, and the logs of what it starts."""
 
-    def __init__(self, sandbox, file, *ros_args, env=None):
+    def __init__(self, sandbox, file, *ros_args, env=None, options=()):
         self.sandbox = sandbox
         self.logs = sandbox.folder / f"logs-{uuid.uuid4().hex[:6]}"
-        command = [GOSHAWK, "launch", file, "--json", "--log-dir", self.logs]
+        command = [GOSHAWK, "launch", file, "--json", "--log-dir", self.logs, *options]
         if ros_args:
             command += ["--ros-args", *ros_args]
         self.process = sandbox.start(*command, env=env)
@@ -61,14 +61,16 @@ class States:
 class Stack:
     """Every stage launched in a world of its own, with the topics that tell what happens."""
 
-    def __init__(self, sandbox, file="flight", ros_args=(), world_parameter="map_server:map_file"):
+    def __init__(self, sandbox, file="flight", ros_args=(), env=None,
+                 world_parameter="map_server:map_file"):
         """@param world_parameter which parameter of which node names the world"""
         self.sandbox = sandbox
         self.world = sandbox.folder / "world.bt"
         made = sandbox.goshawk("world", self.world, "--json")
         if made.status != 0:
             raise AssertionError(f"the world could not be made: {made}")
-        self.launch = Launch(sandbox, file, "-p", f"{world_parameter}:={self.world}", *ros_args)
+        self.launch = Launch(sandbox, file, "-p", f"{world_parameter}:={self.world}", *ros_args,
+                             env=env)
         self.reports = self.echo("stage_report")
         self.states = States(self.echo("navigator_state"))
         self.odom = self.echo("odom", "--no-arr")
@@ -157,7 +159,7 @@ class StackTest(unittest.TestCase):
     def setUpClass(cls):
         cls.sandbox = Sandbox()
         try:
-            cls.stack = Stack(cls.sandbox, cls.launch_file, cls.ros_args)
+            cls.stack = Stack(cls.sandbox, cls.launch_file, cls.ros_args, cls.launch_env())
             cls.stack.wait_ready()
         except BaseException:
             cls.sandbox.close()
@@ -168,6 +170,11 @@ class StackTest(unittest.TestCase):
         left = cls.sandbox.close()
         if left:
             raise AssertionError(f"processes outlived the test: {left}")
+
+    @classmethod
+    def launch_env(cls):
+        """More variables of the stages' environment."""
+        return {}
 
     json_object = SystemTest.json_object
     assert_civil = SystemTest.assert_civil

@@ -33,10 +33,16 @@ class DatagramStorm(StackTest):
         self.assertEqual(sent["as_joined"] + sent["as_others"], DATAGRAMS)
         note(f"{sent}; legs {legs}; refused {self.refused()}")
         self.assertEqual(self.stack.launch.pids(), pids, self.stack.launch.tails())
+        self.check_doctor()
         clearance = second_opinion.smallest_clearance(self.stack.world, self.stack.track(), 0.02)
         self.assertGreater(clearance, harness.BODY_RADIUS_M)
         # Forged datagrams are as if they had not been: goals are reached meanwhile.
         self.assertEqual({leg for leg in legs if not leg.startswith("arrived")}, set(), legs)
+
+    def check_doctor(self):
+        findings = json.loads(self.sandbox.goshawk("doctor", "--json", timeout_s=90).out)["findings"]
+        told = {f["about"] for f in findings if "datagrams were refused" in f["message"]}
+        self.assertIn("node /tracker", told, findings)
 
     def refused(self):
         """The newest count that each stage has logged."""

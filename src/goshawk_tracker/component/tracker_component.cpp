@@ -9,6 +9,7 @@
 #include "goshawk/runtime/component.hpp"
 #include "goshawk/stage/intake.hpp"
 #include "goshawk/stage/map_subscription.hpp"
+#include "goshawk/stage/sender_clock.hpp"
 #include "goshawk/tracker/config.hpp"
 #include "goshawk/tracker/odometry_clock.hpp"
 #include "goshawk/tracker/tracker.hpp"
@@ -99,8 +100,11 @@ class TrackerComponent : public Component {
         "odom", Qos::best_effort(),
         [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) { on_odometry(m); });
     node.subscribe<msg::NavigatorState>("navigator_alive", Qos::best_effort(),
-                                        [this](const msg::NavigatorState&, const MessageInfo&) {
+                                        [this](const msg::NavigatorState& m, const MessageInfo&) {
                                           tracker_.heard_navigator(node_.monotonic_ns());
+                                          navigator_clock_.hear(
+                                              conversions::to_ns(m.header().stamp()),
+                                              node_.monotonic_ns());
                                         });
     node.every(0.05, [this] { watch(); });
     reporter_.ready("tracks with " + config_.controller);
@@ -115,8 +119,13 @@ class TrackerComponent : public Component {
 
   void on_commit(const msg::CommittedTrajectory& m, const MessageInfo& info) {
     const Timing timing{.wire_ns = wire_time_ns(m.header(), info)};
-    const std::int64_t to_monotonic_ns = node_.monotonic_ns() - node_.now_ns();
-    const std::int64_t start_ns = conversions::to_ns(m.start_time()) + to_monotonic_ns;
+    const std::int64_t now_ns = node_.monotonic_ns(), wall_ns = node_.now_ns();
+    const std::int64_t skew_ns = navigator_clock_.skew_ns(wall_ns, now_ns);
+    if (const Status clocks = SenderClock::check(skew_ns, "the navigator"); !clocks) {
+      return reporter_.failed(m.nominal().request().id(), clocks.error(), timing);
+    }
+    const std::int64_t start_ns =
+        conversions::to_ns(m.start_time()) - skew_ns + (now_ns - wall_ns);
     // Latched, it can arrive before the first odometry does: it waits, as nothing is flown yet.
     if (tracker_.status().mode == Mode::idle) {
       waiting_ = Commit{m, start_ns};
@@ -224,6 +233,7 @@ class TrackerComponent : public Component {
   Config config_;
   Tracker tracker_;
   OdometryClock odometry_clock_;
+  SenderClock navigator_clock_;
   StageReporter reporter_;
   Publisher<msg::AttitudeSetpoint> commands_;
   Publisher<msg::TrackingState> states_;

@@ -44,7 +44,7 @@ class TrajectoryOptimizerComponent : public Component {
       const auto corridor = conversions::from_msg(m);
       if (!corridor) return corridor.error();
       return optimizer_.optimise(request, *corridor,
-                                 [&] { return !check_deadline(request, node_.now_ns()); });
+                                 [&] { return !check_deadline(request, node_.monotonic_ns()); });
     });
     timing.compute_ns = compute_ns;
     if (!solution) return reporter_.failed(request.id, solution.error(), timing);

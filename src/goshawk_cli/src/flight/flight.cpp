@@ -29,7 +29,7 @@ class Flight {
         p_(preparation),
         folder_(folder),
         say_(say),
-        record_(node),
+        record_(node, folder + "/events.jsonl"),
         launch_(std::move(launch)),
         recorded_(std::move(recorded)) {}
 
@@ -45,9 +45,11 @@ class Flight {
     } else {
       for (const Vec3& goal : p_.tour.goals_map) {
         outcome.legs.push_back(fly_leg(goal, outcome.legs.size() + 1));
-        if (!outcome.legs.back().arrived) break;
+        if (outcome.legs.back().arrived) continue;
+        if (!options_.keep_going || !launch_lives()) break;
       }
     }
+    record_.tell("end", Json::object());
     launch_.stop();
     outcome.verdict = judge();
     return outcome;
@@ -60,7 +62,8 @@ class Flight {
     if (introspection::Interruptible::interrupted()) {
       return fail(ErrorCode::cancelled, "interrupted");
     }
-    if (launch_.ended()) return launch_.failure();
+    if (launch_.ended()) launch_failure_ = launch_.failure();
+    if (launch_failure_) return *launch_failure_;
     return success();
   }
 
@@ -108,6 +111,7 @@ class Flight {
     const std::int64_t begin_ns = record_.now_ns();
     std::int64_t said_ns = begin_ns;
     Status lives = success();
+    record_.tell("goal", {{"number", number}, {"goal", to_json(goal)}});
     record_.send_goal(goal);
     const bool answered = record_.listen(options_.timeout_s, [&] {
       lives = launch_lives();
@@ -134,6 +138,7 @@ class Flight {
       leg.code = answer.code();
       leg.message = answer.message();
     }
+    record_.tell("leg", {{"number", number}, {"arrived", leg.arrived}, {"code", leg.code}});
     return leg;
   }
 
@@ -168,6 +173,7 @@ class Flight {
   const Say& say_;
   FlightRecorder record_;
   ChildVerb launch_;
+  std::optional<Error> launch_failure_;  // it has ended by itself
   std::function<bool()> recorded_;
 };
 

@@ -20,11 +20,13 @@ constexpr double kListenStep_s = 0.05;
 
 }  // namespace
 
-FlightRecorder::FlightRecorder(Node& node)
+FlightRecorder::FlightRecorder(Node& node, const std::string& events_file)
     : node_(node),
+      events_(events_file),
       goals_(node.advertise<geometry_msgs::msg::PoseStamped>("goal_pose", Qos::reliable_last())) {
   node.subscribe<msg::StageReport>("stage_report", Qos::latched(100),
                                    [this](const msg::StageReport& m, const MessageInfo&) {
+                                     events_.report(node_.monotonic_ns(), m);
                                      const auto role = conversions::stage_role_of(m.stage());
                                      if (m.request_id() != 0) {
                                        requests_[m.request_id()].reports[role] = m;
@@ -34,7 +36,10 @@ FlightRecorder::FlightRecorder(Node& node)
                                    });
   node.subscribe<msg::NavigatorState>(
       "navigator_state", Qos::latched(20),
-      [this](const msg::NavigatorState& m, const MessageInfo&) { navigator_ = m; });
+      [this](const msg::NavigatorState& m, const MessageInfo&) {
+        events_.navigator(node_.monotonic_ns(), m);
+        navigator_ = m;
+      });
   node.subscribe<msg::Path>(
       "path", Qos::reliable_last(),
       [this](const msg::Path& m, const MessageInfo&) { requests_[m.request().id()].path = m; });
@@ -54,11 +59,15 @@ FlightRecorder::FlightRecorder(Node& node)
   node.subscribe<nav_msgs::msg::Odometry>(
       "odom_true", Qos::best_effort(kWholeTrack),
       [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) {
-        if (!std::exchange(knows_truth_, true)) flown_.clear();
+        if (!std::exchange(knows_truth_, true)) {
+          flown_.clear();
+          times_ = {};
+        }
         on_odometry(m);
       });
   node.subscribe<msg::TrackingState>("tracking_state", Qos::best_effort(100),
                                      [this](const msg::TrackingState& m, const MessageInfo&) {
+                                       events_.tracker(node_.monotonic_ns(), m);
                                        if (m.mode() != mode::MODE_FOLLOW) return;
                                        errors_.push_back({conversions::to_ns(m.header().stamp()),
                                                           m.request_id(), m.position_error()});
@@ -67,7 +76,10 @@ FlightRecorder::FlightRecorder(Node& node)
 
 void FlightRecorder::on_odometry(const nav_msgs::msg::Odometry& m) {
   const auto state = conversions::from_msg(m);
-  if (state) flown_.push_back({conversions::to_ns(m.header().stamp()), *state});
+  if (!state) return;
+  if (flown_.empty()) tell("track", Json::object());  // its times count from here
+  const std::int64_t stamp_ns = conversions::to_ns(m.header().stamp());
+  flown_.push_back({times_.time_ns(stamp_ns, node_.monotonic_ns()), *state});
 }
 
 void FlightRecorder::on_commit(const msg::CommittedTrajectory& m) {

@@ -5,6 +5,8 @@
 #include <optional>
 #include <set>
 
+#include "flight/flight_events.hpp"
+#include "flight/track_times.hpp"
 #include "goshawk/conversions/plan.hpp"
 #include "goshawk/core/stage_role.hpp"
 #include "goshawk/core/vehicle.hpp"
@@ -15,7 +17,7 @@
 namespace goshawk::cli {
 
 struct FlownState {
-  std::int64_t stamp_ns = 0;
+  std::int64_t stamp_ns = 0;  // by TrackTimes
   RigidBodyState state;
 };
 
@@ -35,7 +37,7 @@ struct RequestRecord {
 /// Listens to a whole flight, sends goals, and keeps what came.
 class FlightRecorder {
  public:
-  explicit FlightRecorder(runtime::Node& node);
+  FlightRecorder(runtime::Node& node, const std::string& events_file);
 
   void send_goal(const Vec3& goal_map);
 
@@ -49,6 +51,10 @@ class FlightRecorder {
   const std::vector<TrackedError>& errors() const { return errors_; }
   const std::vector<CommittedTrajectory>& committed() const { return committed_; }
   const std::map<std::uint64_t, RequestRecord>& requests() const { return requests_; }
+  /// A line of the flight's events.
+  void tell(const std::string& event, Json what) {
+    events_.add(node_.monotonic_ns(), event, std::move(what));
+  }
   std::int64_t now_ns() const { return node_.now_ns(); }
   int goal_readers() const { return goals_.matched(); }
 
@@ -57,11 +63,13 @@ class FlightRecorder {
   void on_odometry(const nav_msgs::msg::Odometry& m);
 
   runtime::Node& node_;
+  FlightEvents events_;
   runtime::Publisher<geometry_msgs::msg::PoseStamped> goals_;
   std::set<StageRole> ready_;
   std::optional<goshawk_msgs::msg::NavigatorState> navigator_;
   std::vector<FlownState> flown_;
   bool knows_truth_ = false;
+  TrackTimes times_;
   std::vector<TrackedError> errors_;
   std::vector<CommittedTrajectory> committed_;
   std::map<std::uint64_t, RequestRecord> requests_;

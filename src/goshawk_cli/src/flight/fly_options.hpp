@@ -23,6 +23,7 @@ struct FlyOptions {
   std::string folder;                         // empty: flights/DATE
   double timeout_s = 120.0;                   // for each goal
   std::vector<std::string> stage_parameters;  // node:name:=value
+  bool keep_going = false;  // to the next goal if one is not reached
   bool record = true;
 };
 

@@ -17,15 +17,28 @@ struct CampaignOptions {
   std::vector<double> wind_m_s = {0.0, 1.5, 3.0};
   std::vector<double> noise_m = {0.0};
   Vec3 size_m = Vec3(10.0, 10.0, 4.0);
-  int jobs = 2;
-  std::string launch = "flight_lock_step";
+  std::optional<int> jobs;
+  std::string engine = "local";
+  std::vector<std::string> sbatch;
+  double timeout_s = 60.0;
+  std::vector<std::string> faults;
+  std::string launch;
   std::vector<std::string> parameters;
   std::string output = "campaign";
 };
 
-int run_campaign(const CampaignOptions& o, const Console& console) {
+constexpr char kLockStep[] = "flight_lock_step";
+
+int run_campaign(CampaignOptions o, const Console& console) {
+  if (o.launch.empty()) o.launch = o.faults.empty() ? kLockStep : "flight";
+  if (!o.faults.empty() && o.launch == kLockStep) {
+    return console.wrong_call(
+        fail(ErrorCode::invalid_parameter,
+             "--faults needs processes of their own in real time: in lock step each waits for all "
+             "others; use --launch flight"));
+  }
   Words parameters = o.parameters;
-  if (parameters.empty() && o.launch == "flight_lock_step") parameters = {"simulator:speed:=0"};
+  if (parameters.empty() && o.launch == kLockStep) parameters = {"simulator:speed:=0"};
   return become_helper(
       "campaign.py",
       {{"missions", o.missions},
@@ -36,7 +49,11 @@ int run_campaign(const CampaignOptions& o, const Console& console) {
        {"wind", o.wind_m_s},
        {"noise", o.noise_m},
        {"size", fmt::format("{},{},{}", o.size_m.x(), o.size_m.y(), o.size_m.z())},
-       {"jobs", o.jobs},
+       {"jobs", o.jobs ? Json(*o.jobs) : Json()},
+       {"engine", o.engine},
+       {"sbatch", o.sbatch},
+       {"timeout_s", o.timeout_s},
+       {"faults", o.faults},
        {"launch", o.launch},
        {"parameters", parameters},
        {"output", o.output}},
@@ -73,11 +90,22 @@ void add_campaign(Program& program) {
   add_numbers(verb, "--wind", o->wind_m_s, 15.0, "[m/s] 0,1.5,...");
   add_numbers(verb, "--noise", o->noise_m, 1.0, "[m] of the odometry: 0,0.005,...");
   add_point(verb, "--size", o->size_m, "[m] of the worlds");
-  add_count("--jobs", o->jobs, "missions at once");
-  auto* launch =
-      verb->add_option("--launch", o->launch,
-                       "launch file: flight_lock_step, where missions repeat bit for bit, or flight")
-          ->capture_default_str();
+  verb->add_option("--jobs", o->jobs, "missions at once (default 2; with Slurm as many as it will)")
+      ->check(at_least_one);
+  verb->add_option("--engine", o->engine, "local, or slurm: an array job of a cluster")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"local", "slurm"}));
+  verb->add_option("--sbatch", o->sbatch,
+                   "option of Slurm's sbatch, as in --sbatch=--partition=long; may repeat");
+  verb->add_option("--timeout", o->timeout_s, "[s] for each goal")
+      ->capture_default_str()
+      ->check(CLI::Range(1.0, 3600.0));
+  verb->add_option("--faults", o->faults, "kill,stall,clock,loss,blind,hostile: at random moments")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"kill", "stall", "clock", "loss", "blind", "hostile"}));
+  auto* launch = verb->add_option("--launch", o->launch,
+                                  "launch file (default: flight_lock_step, where missions repeat "
+                                  "bit for bit; with --faults flight)");
   verb.completes(launch, launch_files);
   verb->add_option("-p", o->parameters,
                    "NODE:NAME:=VALUE of a stage; may repeat (default in lock step: "
@@ -87,6 +115,7 @@ void add_campaign(Program& program) {
       "A campaign that is called again with the same folder continues.\n\n"
       "Examples:\n"
       "  goshawk campaign --missions 50 --goals 3 --output campaign\n"
+      "  goshawk campaign --faults kill,stall,clock,loss,blind,hostile --missions 10\n"
       "  goshawk campaign --kinds forest,office --densities 0.1,0.2,0.3 --wind 0,2");
   verb.runs([o](const Console& console) { return run_campaign(*o, console); });
 }

@@ -56,6 +56,7 @@ void add_fly(Program& program) {
   verb.completes(launch, launch_files);
   verb->add_option("--output", o->folder, "flight folder (default flights/DATE)");
   verb->add_option("--timeout", o->timeout_s, "[s] for each goal")->capture_default_str();
+  verb->add_flag("--keep-going", o->keep_going, "fly to the next goal if one is not reached");
   verb->add_option("-p", o->stage_parameters, "parameter of a stage, node:name:=value; may repeat");
   verb->add_flag("--no-record{false}", o->record, "do not record the topics to flight.mcap");
   verb->footer(

@@ -14,6 +14,7 @@ namespace fs = std::filesystem;
 
 struct LaunchOptions {
   std::string file;
+  std::string host;
   std::string map;
   std::optional<Vec3> start_map;
   std::string log_dir;
@@ -76,6 +77,7 @@ int run_launch(const LaunchOptions& o, const Console& console) {
   }
   return become_helper("launch.py",
                        {{"file", *file},
+                        {"host", o.host},
                         {"map", o.map},
                         {"start", start},
                         {"log_dir", log_dir},
@@ -97,6 +99,8 @@ void add_launch(Program& program) {
   verb.completes(file, [](const Words& before) {
     return before.empty() ? launch_files(before) : Words();
   });
+  verb->add_option("--host", o->host,
+                   "start only what the file's hosts give to this one (docs/hosts.md)");
   verb->add_option("--map", o->map, "map to fly in (default: the launch file's, else a made world)");
   add_point(verb, "--start", o->start_map,
             "[m] where the simulated vehicle begins (default with --map: a free place)");
@@ -113,6 +117,7 @@ void add_launch(Program& program) {
       "Examples:\n"
       "  goshawk launch flight\n"
       "  goshawk launch flight --map office.bt --start 1,1,1\n"
+      "  goshawk launch flight_hosts --host vehicle\n"
       "  goshawk launch flight_container --log-dir logs --ros-args -p navigator:v_max_m_s:=1\n"
       "  goshawk launch --list");
   verb.runs([o](const Console& console) { return run_launch(*o, console); });

@@ -86,8 +86,8 @@ void add_times(const Verb& verb, recording::ReplayOptions& r) {
   verb->add_flag("-l,--loop", r.loop, "again and again, until Ctrl-C");
   verb->add_flag("--clock", r.clock, "publish the recording's time on /clock, at 100 Hz");
   verb->add_flag("--restamp", r.restamp,
-                 "move the stamps inside of messages to now: stages refuse requests whose "
-                 "deadline has passed");
+                 "move the stamps inside of messages to now: a request that is played again "
+                 "counts as new, with its whole deadline");
   verb->add_option("--wait", r.wait_s, "[s] longest wait for readers before the start")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 1e4));

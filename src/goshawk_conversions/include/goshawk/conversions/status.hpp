@@ -8,6 +8,9 @@
 /// Values of status messages that have names (STATE_ARRIVED), for code and for people.
 namespace goshawk::conversions {
 
+/// A counter of stage reports: datagrams that the stage's process refused (docs/security.md).
+inline constexpr const char* kRefusedDatagrams = "refused_datagrams";
+
 /// StageReport's `stage`
 std::uint8_t to_msg(StageRole role);
 /// @return other for a value that has no constant

@@ -19,7 +19,7 @@ constexpr auto words_of(UnknownSpace) {
 /// One plan that is asked for. Frame `map`.
 struct PlanRequest {
   std::uint64_t id = 0;                            // unique to the asker, above 0
-  std::int64_t stamp_ns = 0;                       // when it was asked
+  std::int64_t stamp_ns = 0;                       // when it was asked; in a stage: first heard of
   std::optional<std::int64_t> start_time_ns = {};  // when the vehicle will be in `start`; none: at
                                                    // rest, whenever
   FlatState start;                                 // its jerk is not used

@@ -78,6 +78,9 @@ class ClockWatch {
   double offset_s_;
 };
 
+/// Of datagrams that a node's process refused. @param count at least one @param message its report's
+Finding check_refused(const std::string& node, std::uint64_t count, const std::string& message);
+
 /// @param jump_s [s] change of the clock while it was watched
 Finding check_clock_jump(double jump_s);
 

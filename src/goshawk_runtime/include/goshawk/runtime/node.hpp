@@ -35,6 +35,7 @@ class StartupFault : public std::runtime_error {
 
 struct MessageInfo {
   std::int64_t received_ns = 0;  // [ns] clock of the node, when its thread took the message
+  std::int64_t waited_ns = 0;    // [ns] before that, since it had arrived; 0 in simulated time
   std::int64_t sent_ns = 0;      // [ns] the sender's system clock, when it was published
 };
 
@@ -83,6 +84,9 @@ class Node {
   /// out counts on this one.
   std::int64_t monotonic_ns() const;
   spdlog::logger& log() { return *log_; }
+  /// Of the node's participant: @see Context::refused_datagrams(), last_refusal()
+  std::uint64_t refused_datagrams() const;
+  std::string last_refusal() const;
 
   /// Also switches to simulated time or lock step if the user asks for it. From here on the node
   /// answers requests on /parameter_request.

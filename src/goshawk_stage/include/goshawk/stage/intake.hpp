@@ -42,10 +42,30 @@ class SupersededRequests {
   std::deque<std::pair<std::uint64_t, std::uint64_t>> pairs_;  // obsolete, newer; the newest ones
 };
 
-/// Takes a request in. @return the request if it is valid, within its deadline and not superseded;
-/// otherwise nothing, and the failure has been reported
+/// Remembers when each request was first heard of. Deadlines count from then, on the stage's own
+/// clock: the asker may be another host, whose clock differs.
+class RequestArrivals {
+ public:
+  /// @param arrived_ns [ns] monotonic, of a message with this request
+  /// @return [ns] when the first one arrived
+  std::int64_t note(const goshawk_msgs::msg::PlanRequest& m, std::int64_t arrived_ns);
+
+ private:
+  struct Arrival {
+    std::uint64_t id;
+    std::int64_t stamp_ns;  // askers may use the same ids
+    std::int64_t arrived_ns;
+  };
+  std::deque<Arrival> arrivals_;  // the newest ones
+};
+
+/// Takes a request in. Its stamp becomes arrived_ns.
+/// @param arrived_ns, now_ns [ns] monotonic: when it was first heard of, and now
+/// @return the request if it is valid, within its deadline and not superseded; otherwise nothing,
+/// and the failure has been reported
 std::optional<PlanRequest> open_request(const goshawk_msgs::msg::PlanRequest& m,
-                                        std::int64_t now_ns, StageReporter& reporter, Timing timing,
+                                        std::int64_t arrived_ns, std::int64_t now_ns,
+                                        StageReporter& reporter, Timing timing,
                                         const SupersededRequests& superseded = {});
 
 /// The input of a planning stage: requests on one topic, alone or inside another message. It hears
@@ -64,12 +84,12 @@ class Intake {
       : node_(node), reporter_(reporter), handler_(std::move(handler)) {
     if constexpr (!kIsRequest) {
       node.subscribe<Request>("plan_request", runtime::Qos::reliable_last(),
-                              [this](const Request& m, const auto&) { note(m); });
+                              [this](const Request& m, const auto& info) { note(m, info); });
     }
     node.subscribe<Message>(topic, runtime::Qos::reliable_last(),
                             [this](const Message& m, const runtime::MessageInfo& info) {
-                              note(request_of(m));
-                              waiting_.emplace_back(m, wire_time_ns(m.header(), info));
+                              waiting_.push_back({m, wire_time_ns(m.header(), info),
+                                                  note(request_of(m), info)});
                               if (waiting_.size() == 1) node_.later([this] { serve(); });
                             });
   }
@@ -88,13 +108,23 @@ class Intake {
     }
   }
 
-  void note(const Request& request) { superseded_.note(request.id(), request.supersedes()); }
+  struct Waiting {
+    Message message;
+    std::int64_t wire_ns;
+    std::int64_t arrived_ns;
+  };
+
+  /// @return [ns] when the request was first heard of
+  std::int64_t note(const Request& request, const runtime::MessageInfo& info) {
+    superseded_.note(request.id(), request.supersedes());
+    return arrivals_.note(request, node_.monotonic_ns() - info.waited_ns);
+  }
 
   void serve() {
-    for (const auto& [message, wire_ns] : std::exchange(waiting_, {})) {
+    for (const auto& [message, wire_ns, arrived_ns] : std::exchange(waiting_, {})) {
       const Timing timing{.wire_ns = wire_ns};
-      const auto request =
-          open_request(request_of(message), node_.now_ns(), reporter_, timing, superseded_);
+      const auto request = open_request(request_of(message), arrived_ns, node_.monotonic_ns(),
+                                        reporter_, timing, superseded_);
       if (request) handler_(message, *request, timing);
     }
   }
@@ -103,7 +133,8 @@ class Intake {
   StageReporter& reporter_;
   Handler handler_;
   SupersededRequests superseded_;
-  std::vector<std::pair<Message, std::int64_t>> waiting_;  // with the time on the wire [ns]
+  RequestArrivals arrivals_;
+  std::vector<Waiting> waiting_;
 };
 
 }  // namespace goshawk::stage

@@ -50,6 +50,7 @@ class StageReporter {
 
  private:
   void not_sent(std::uint64_t request_id, const Error& error);
+  void tell_of_refusals();
   void publish(std::uint64_t request_id, ErrorCode code, const std::string& message, Timing timing,
                Counters counters);
 
@@ -57,6 +58,7 @@ class StageReporter {
   runtime::Publisher<goshawk_msgs::msg::StageReport> publisher_;
   goshawk_msgs::msg::StageReport report_;
   std::int64_t complained_ns_ = 0;
+  std::uint64_t refused_ = 0;  // datagrams, when they were last told
 };
 
 }  // namespace goshawk::stage

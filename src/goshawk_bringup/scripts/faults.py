@@ -1,0 +1,192 @@
+"""Faults of a flight: which, when, how long (all from a seed), and how each is done.
+
+    kill     SIGKILL of a stage, which the supervisor starts again
+    stall    SIGSTOP of a stage, of all stages, or of everything and the vehicle; then SIGCONT
+    clock    the wall clock of a stage, or of all, is stepped, and later stepped back
+    loss     a stage, or all, lose a part of the datagrams that they receive
+    blind    the map server falls silent, or starts again with an empty map
+    hostile  mutated datagrams to every process, or a stranger who publishes forged messages
+
+The vehicle (the plant) is never killed, and never stalled alone: no fault of software stops a body.
+"""
+
+import random
+import shutil
+import signal
+
+import forgery
+
+KINDS = ["kill", "stall", "clock", "loss", "blind", "hostile"]
+PLANT = "simulator"
+STAGES = ["map_server", "path_search", "corridor_builder", "trajectory_optimizer", "navigator",
+          "tracker", "flight_check"]
+# Everything that runs in a flight; the more a stage has to do with control, the more often it is hit.
+TARGETS = STAGES + ["navigator", "tracker"]
+EMPTY_MAP = (b"# Octomap OcTree binary file\nid OcTree\nsize 0\nres 0.1\ndata\n")
+
+
+def log_uniform(draw, low, high):
+    return low * (high / low) ** draw.random()
+
+
+class Fault:
+    """One fault, as it was drawn. begin() does it, end() undoes it; both may be called at any time
+    of a flight, end() once after begin()."""
+
+    instant = False  # over as soon as it has begun
+
+    def __init__(self, draw, targets):
+        self.targets = targets
+        self.duration_s = 0.0
+        self.after_s = draw.uniform(0.3, 4.0)  # since the end of the one before
+        self.choose(draw)
+
+    def row(self):
+        return {"kind": self.kind, "what": self.what(), "targets": self.targets,
+                "duration_s": round(self.duration_s, 3)}
+
+
+class Kill(Fault):
+    kind, instant = "kill", True
+
+    def choose(self, draw):
+        self.targets = [draw.choice(TARGETS)]
+
+    def what(self):
+        return f"SIGKILL of {self.targets[0]}"
+
+    def begin(self, flight):
+        flight.signal(self.targets, signal.SIGKILL)
+
+    def end(self, flight):
+        pass
+
+
+class Stall(Fault):
+    kind = "stall"
+
+    def choose(self, draw):
+        self.duration_s = log_uniform(draw, 0.05, 10.0)
+        # Of everything with the plant: a machine that was suspended with a simulated vehicle on it.
+        self.targets = draw.choice([*([t] for t in TARGETS), STAGES, [*STAGES, PLANT]])
+
+    def what(self):
+        return f"stop of {names(self.targets)} for {self.duration_s:.2f} s"
+
+    def begin(self, flight):
+        flight.signal(self.targets, signal.SIGSTOP)
+
+    def end(self, flight):
+        flight.signal(self.targets, signal.SIGCONT)
+
+
+class Clock(Fault):
+    kind = "clock"
+
+    def choose(self, draw):
+        self.duration_s = log_uniform(draw, 0.5, 10.0)
+        self.step_s = draw.uniform(-5.0, 5.0)
+        self.targets = draw.choice([*([t] for t in TARGETS), [PLANT], [*STAGES, PLANT]])
+
+    def what(self):
+        return (f"wall clock of {names(self.targets)} stepped by {self.step_s:+.2f} s, and back "
+                f"after {self.duration_s:.2f} s")
+
+    def begin(self, flight):
+        flight.for_each(self.targets, lambda control: control.step_clock(self.step_s))
+
+    def end(self, flight):
+        flight.for_each(self.targets, lambda control: control.step_clock(-self.step_s))
+
+
+class Loss(Fault):
+    kind = "loss"
+
+    def choose(self, draw):
+        self.duration_s = log_uniform(draw, 0.1, 5.0)
+        self.part = draw.choice([draw.uniform(0.05, 0.5), draw.uniform(0.5, 0.99), 1.0])
+        self.targets = draw.choice([*([t] for t in TARGETS), [PLANT], [*STAGES, PLANT]])
+
+    def what(self):
+        return (f"{names(self.targets)} lose {100 * self.part:.0f} % of what they receive for "
+                f"{self.duration_s:.2f} s")
+
+    def begin(self, flight):
+        flight.for_each(self.targets, lambda control: control.lose(received=self.part))
+
+    def end(self, flight):
+        flight.for_each(self.targets, lambda control: control.lose())
+
+
+class Blind(Fault):
+    kind = "blind"
+
+    def choose(self, draw):
+        self.targets = ["map_server"]
+        self.duration_s = log_uniform(draw, 0.5, 10.0)
+        self.empty = draw.random() < 0.5
+
+    def what(self):
+        how = "starts again with an empty map" if self.empty else "is silent"
+        return f"map server {how} for {self.duration_s:.2f} s"
+
+    def begin(self, flight):
+        if self.empty:
+            flight.world.write_bytes(EMPTY_MAP)
+            flight.signal(self.targets, signal.SIGKILL)
+        else:
+            flight.for_each(self.targets, lambda control: control.lose(sent=1.0))
+
+    def end(self, flight):
+        if self.empty:
+            shutil.copyfile(flight.true_world, flight.world)
+            flight.signal(self.targets, signal.SIGKILL)
+        else:
+            flight.for_each(self.targets, lambda control: control.lose())
+
+
+class Hostile(Fault):
+    kind = "hostile"
+
+    def choose(self, draw):
+        self.seed = draw.randrange(1, 1 << 31)
+        self.duration_s = draw.uniform(2.0, 5.0)
+        self.act = draw.choice(["storm", *forgery.ACTS])
+        self.processes = []
+
+    def what(self):
+        if self.act == "storm":
+            return "mutated datagrams to every process"
+        return f"a stranger publishes {forgery.ACTS[self.act].what}"
+
+    def begin(self, flight):
+        if self.act == "storm":
+            command = [flight.program("goshawk_datagram_storm"), "--count", "1000000", "--rate",
+                       "1000", "--listen", "1", "--seed", str(self.seed)]
+        else:
+            command = forgery.ACTS[self.act].command(flight, random.Random(self.seed))
+        self.processes = [flight.start(command)]
+
+    def end(self, flight):
+        for process in self.processes:
+            flight.stop(process)
+
+
+CLASSES = {c.kind: c for c in (Kill, Stall, Clock, Loss, Blind, Hostile)}
+
+
+def names(targets):
+    if targets == STAGES:
+        return "all stages"
+    if targets == [*STAGES, PLANT]:
+        return "all stages and the vehicle"
+    return ", ".join(targets)
+
+
+def drawn(kinds, seed):
+    """Faults without an end; the k-th follows from the seed alone."""
+    k = 0
+    while True:
+        draw = random.Random(f"{seed}/fault {k}")
+        yield CLASSES[draw.choice(kinds)](draw, [])
+        k += 1

@@ -1,0 +1,216 @@
+#include "goshawk/map_server/map_journal.hpp"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "goshawk/map_server/live_map.hpp"
+#include "journal_format.hpp"
+#include "scan_support.hpp"
+#include "support.hpp"
+
+namespace goshawk::map_server {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr JournalIdentity kIdentity{0.2, 77};
+
+JournalBrick random_brick(Random& random, int places) {
+  JournalBrick brick;
+  brick.corner = {64 * int(random.uniform(-places, places)), 8 * int(random.uniform(-places, places)),
+                  8 * int(random.uniform(-places, places))};
+  for (auto& word : brick.raw) word = random.next();
+  for (auto& word : brick.known) word = random.next();
+  return brick;
+}
+
+/// Batches, and what they come to, kept in a way of its own.
+struct Truth {
+  std::vector<std::vector<JournalBrick>> batches;
+
+  std::map<Index3, JournalBrick, JournalOrder> after(std::size_t count) const {
+    std::map<Index3, JournalBrick, JournalOrder> bricks;
+    for (std::size_t k = 0; k < count; ++k) {
+      for (const JournalBrick& brick : batches[k]) bricks[brick.corner] = brick;
+    }
+    return bricks;
+  }
+};
+
+Truth random_batches(Random& random, int count, int places) {
+  Truth truth;
+  for (int k = 0; k < count; ++k) {
+    std::map<Index3, JournalBrick, JournalOrder> batch;  // each brick once
+    for (int b = 0; b < 1 + k % 5; ++b) {
+      const JournalBrick brick = random_brick(random, places);
+      batch[brick.corner] = brick;
+    }
+    truth.batches.emplace_back();
+    for (const auto& [corner, brick] : batch) truth.batches.back().push_back(brick);
+  }
+  return truth;
+}
+
+void write_batches(MapJournal& journal, const Truth& truth) {
+  for (std::size_t k = 0; k < truth.batches.size(); ++k) {
+    const Status status = journal.append(k + 1, truth.batches[k]);
+    ASSERT_TRUE(status) << status.error().message;
+  }
+}
+
+JournalContent read_whole(const std::string& bytes) {
+  return read_journal(std::as_bytes(std::span(bytes)), kIdentity).value();
+}
+
+class Journal : public ::testing::Test {
+ protected:
+  map_server::testing::Folder folder_;
+  std::string path_ = folder_.file("map.journal");
+  Random random_{9};
+};
+
+TEST_F(Journal, GivesBackTheNewestOfEachBrick) {
+  const Truth truth = random_batches(random_, 60, 3);
+  {
+    MapJournal journal = MapJournal::open(path_, kIdentity).value();
+    EXPECT_TRUE(journal.content().bricks.empty());
+    write_batches(journal, truth);
+  }
+  const MapJournal again = MapJournal::open(path_, kIdentity).value();
+  EXPECT_EQ(again.content().bricks, truth.after(60));
+  EXPECT_EQ(again.content().version, 60U);
+  EXPECT_EQ(again.content().damaged, 0);
+}
+
+TEST_F(Journal, GoesOnWhereItEnded) {
+  const Truth truth = random_batches(random_, 20, 2);
+  for (std::size_t k = 0; k < truth.batches.size(); ++k) {
+    MapJournal journal = MapJournal::open(path_, kIdentity).value();
+    ASSERT_EQ(journal.content().bricks, truth.after(k));
+    ASSERT_TRUE(journal.append(k + 1, truth.batches[k]));
+  }
+}
+
+// A process may be killed, or a machine may stop, at any byte.
+TEST_F(Journal, CutOffAnywhereItHoldsTheBatchesThatAreWhole) {
+  const Truth truth = random_batches(random_, 12, 2);
+  MapJournal journal = MapJournal::create(path_, kIdentity).value();
+  write_batches(journal, truth);
+  const std::string whole = map_server::testing::bytes_of(path_);
+  std::vector<std::size_t> ends{sizeof(JournalHead)};
+  for (const auto& batch : truth.batches) {
+    ends.push_back(ends.back() + batch.size() * sizeof(JournalEntry));
+  }
+  ASSERT_EQ(ends.back(), whole.size());
+  for (std::size_t length = sizeof(JournalHead); length <= whole.size(); length += 97) {
+    const JournalContent content = read_whole(whole.substr(0, length));
+    const auto batches =
+        std::size_t(std::ranges::upper_bound(ends, length) - ends.begin()) - 1;
+    ASSERT_EQ(content.bricks, truth.after(batches)) << length;
+    ASSERT_EQ(content.version, batches) << length;
+    ASSERT_EQ(content.damaged > 0, length != ends[batches]) << length;
+    ASSERT_EQ(content.whole_bytes, ends[batches]);
+  }
+}
+
+TEST_F(Journal, DamageIsNoticedAndHidesNoOtherBatch) {
+  const Truth truth = random_batches(random_, 12, 50);  // no brick comes twice
+  MapJournal journal = MapJournal::create(path_, kIdentity).value();
+  write_batches(journal, truth);
+  const std::string whole = map_server::testing::bytes_of(path_);
+  for (std::size_t at = sizeof(JournalHead); at < whole.size(); at += 501) {
+    std::string damaged = whole;
+    damaged[at] = char(damaged[at] ^ 4);
+    const JournalContent content = read_whole(damaged);
+    ASSERT_GT(content.damaged, 0) << at;
+    ASSERT_EQ(content.bricks.size() + std::size_t(content.damaged), truth.after(12).size()) << at;
+    for (const auto& [corner, brick] : content.bricks) {
+      ASSERT_EQ(brick, truth.after(12).at(corner));
+    }
+  }
+}
+
+TEST_F(Journal, OfAnotherMapOrOtherFilesAreRefusedAndStayAsTheyAre) {
+  ASSERT_TRUE(MapJournal::create(path_, {0.2, 78}));
+  const auto other = MapJournal::open(path_, kIdentity);
+  EXPECT_EQ(other.code(), ErrorCode::invalid_input);
+  EXPECT_THAT(other.error().message, HasSubstr("another map"));
+  const std::string text = folder_.write("letter.txt", "Dear reader, this is a letter and no map.");
+  EXPECT_EQ(MapJournal::open(text, kIdentity).code(), ErrorCode::map_malformed);
+  EXPECT_THAT(map_server::testing::bytes_of(text), HasSubstr("Dear reader"));
+}
+
+TEST_F(Journal, IsWrittenAnewWhenMostOfItIsObsolete) {
+  MapJournal journal = MapJournal::create(path_, kIdentity).value();
+  const Truth truth = random_batches(random_, 3, 2);
+  std::map<Index3, JournalBrick, JournalOrder> newest;
+  std::uintmax_t largest = 0;
+  std::uint64_t version = 0;
+  while (version < 40'000) {  // 120 MB, if nothing were given up
+    std::vector<JournalBrick> batch = truth.batches[version % 3];
+    for (JournalBrick& brick : batch) newest[brick.corner] = brick, brick.raw[0] = version;
+    for (const JournalBrick& brick : batch) newest[brick.corner] = brick;
+    ASSERT_TRUE(journal.append(++version, batch));
+    if (version % 500 == 0) largest = std::max(largest, std::filesystem::file_size(path_));
+  }
+  EXPECT_LT(largest, 20U << 20);
+  const MapJournal again = MapJournal::open(path_, kIdentity).value();
+  EXPECT_EQ(again.content().bricks, newest);
+  EXPECT_EQ(again.content().version, version);
+}
+
+TEST_F(Journal, ADiskThatIsFullIsToldAndNothingThatIsWholeIsLost) {
+  // Every write to this device fails as on a full disk.
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "there is no /dev/full";
+  const auto full = MapJournal::create("/dev/full", kIdentity);
+  EXPECT_EQ(full.code(), ErrorCode::io_failed);
+  EXPECT_THAT(full.error().message, HasSubstr("No space left on device"));
+  EXPECT_EQ(MapJournal::open(folder_.file("absent/map.journal"), kIdentity).code(),
+            ErrorCode::io_failed);
+}
+
+TEST_F(Journal, OfALiveMapGivesTheMapBack) {
+  const Growth growth{UnknownPolicy::free, 0.25};
+  const Box box{Vec3(-7.4, -2.0, -1.0), Vec3(8.0, 2.2, 1.4)};
+  LiveMap map = LiveMap::unknown_space(box, 0.2, growth).value();
+  MapJournal journal = MapJournal::create(path_, kIdentity).value();
+  RawVoxels voxels{map.geometry(), map.grid().raw, map.grid().known};
+  for (int scan = 0; scan < 20; ++scan) {
+    const Vec3 from(random_.uniform(-3, 3), random_.uniform(-1, 1), 0.1);
+    std::vector<Vec3> points;
+    for (int k = 0; k < 60; ++k) {
+      points.push_back(from + 4.0 * Vec3(random_.uniform(-1, 1), random_.uniform(-1, 1),
+                                         random_.uniform(-0.3, 0.3)));
+    }
+    const auto result = testing::insert(map, points, from, 4.0);
+    ASSERT_TRUE(result);
+    ASSERT_TRUE(journal.append(result->update.to_version,
+                               journal_bricks(result->update, map.geometry())));
+  }
+  MapJournal::open(path_, kIdentity).value().content().write_into(voxels);
+  EXPECT_EQ(voxels.occupied, map.grid().raw);
+  EXPECT_EQ(voxels.known, map.grid().known);
+  EXPECT_GT(voxels.known.count(), 1000);
+  MapSource source;
+  source.voxels = voxels;
+  const LiveMap restored = LiveMap::from_source(source, {}, growth).value();
+  EXPECT_EQ(restored.grid().grown, map.grid().grown);
+}
+
+TEST_F(Journal, BricksBeyondTheMapAreLeftOut) {
+  JournalContent content;
+  for (const Index3 corner : {Index3{-6400, 0, 0}, {0, 8000, 0}, {0, 0, -800}}) {
+    JournalBrick brick = random_brick(random_, 1);
+    brick.corner = corner;
+    content.bricks[corner] = brick;
+  }
+  const GridGeometry geometry{Vec3(0, 0, 0), 0.2, {100, 20, 20}};
+  RawVoxels voxels{geometry, BitGrid(geometry.size, true), BitGrid(geometry.size, false)};
+  content.write_into(voxels);
+  EXPECT_EQ(voxels.known.count(), 0);
+}
+
+}  // namespace
+}  // namespace goshawk::map_server
