@@ -229,6 +229,8 @@ def launch(options, voice):
         os.environ.setdefault("GOSHAWK_INTERFACES", interfaces)
     plan = launch_file.Plan(content, options["file"], options["prefix"], options["ros_args"],
                             options["host"])
+    if options["secure"]:
+        plan.secure = os.path.abspath(options["secure"])
     nodes = [node for program in plan.programs() for node in program.nodes]
     if options["check"]:
         names = [program.name for program in plan.programs()]

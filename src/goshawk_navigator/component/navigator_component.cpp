@@ -1,8 +1,12 @@
+#include <algorithm>
+#include <deque>
+
 #include "goshawk/conversions/status.hpp"
 #include "goshawk/conversions/vehicle.hpp"
 #include "goshawk/navigator/navigator.hpp"
 #include "goshawk/runtime/component.hpp"
 #include "goshawk/stage/intake.hpp"
+#include "goshawk/stage/map_subscription.hpp"
 
 namespace goshawk::navigator {
 namespace {
@@ -27,11 +31,55 @@ std::uint8_t to_msg(State state) {
   return std::uint8_t(state);
 }
 
+/// What the navigator plans by itself, for those who read who planned.
+constexpr const char* kBrakeName = "navigator_brake";
+
+double moved_m(const msg::StageReport& m) {
+  for (const auto& counter : m.counters()) {
+    if (counter.name() == "goal_moved_m") return counter.value();
+  }
+  return 0.0;
+}
+
+/// Trajectories as they came, until one is committed.
+class Answers {
+ public:
+  std::uint64_t keep(const msg::BezierTrajectory& m, std::int64_t wire_ns) {
+    if (kept_.size() == kMost) kept_.pop_front();
+    kept_.push_back({++number_, m, wire_ns});
+    return number_;
+  }
+  struct Kept {
+    std::uint64_t number;
+    msg::BezierTrajectory message;
+    std::int64_t wire_ns;
+  };
+  const Kept* find(std::uint64_t number) const {
+    const auto at = std::ranges::find(kept_, number, &Kept::number);
+    return at == kept_.end() ? nullptr : &*at;
+  }
+
+ private:
+  static constexpr std::size_t kMost = 4;
+  std::deque<Kept> kept_;
+  std::uint64_t number_ = 0;
+};
+
 constexpr double kAlive_s = 0.5;  // the newest state again: the tracker lands without it
 
-/// goal_pose, odom, trajectory, stage_report -> plan_request, committed_trajectory,
-/// navigator_state, navigator_alive. Counts on the monotonic clock; messages carry the wall
-/// clock's.
+/// A report can end a request, so it is heard from one process for each stage of the plan and for
+/// the tracker. @return 0: anybody's
+std::uint8_t reporting_stage(const msg::StageReport& m) {
+  namespace constants = msg::StageReport_Constants;
+  const bool decides =
+      m.stage() == constants::STAGE_PATH_SEARCH || m.stage() == constants::STAGE_CORRIDOR_BUILDER ||
+      m.stage() == constants::STAGE_TRAJECTORY_OPTIMIZER || m.stage() == constants::STAGE_TRACKER;
+  return decides ? m.stage() : std::uint8_t{0};
+}
+
+/// goal_pose, odom, trajectory, stage_report, tracking_state, map/voxels -> plan_request,
+/// committed_trajectory, navigator_state, navigator_alive. Counts on the monotonic clock; messages
+/// carry the wall clock's.
 class NavigatorComponent : public Component {
  public:
   explicit NavigatorComponent(Node& node)
@@ -42,7 +90,11 @@ class NavigatorComponent : public Component {
         requests_(node.advertise<msg::PlanRequest>("plan_request", Qos::reliable_last())),
         commits_(node.advertise<msg::CommittedTrajectory>("committed_trajectory", Qos::latched())),
         states_(node.advertise<msg::NavigatorState>("navigator_state", Qos::latched(20))),
-        alive_(node.advertise<msg::NavigatorState>("navigator_alive", Qos::best_effort())) {
+        alive_(node.advertise<msg::NavigatorState>("navigator_alive", Qos::best_effort())),
+        map_(node, reporter_, [this](const auto& grid) {
+          navigator_.on_map(grid, node_.monotonic_ns());
+          carry_out();
+        }) {
     subscribe();
     node.every(0.02, [this] {
       navigator_.tick(node_.monotonic_ns());
@@ -65,19 +117,28 @@ class NavigatorComponent : public Component {
         "goal_pose", Qos::reliable_last(),
         [this](const geometry_msgs::msg::PoseStamped& m, const MessageInfo&) { on_goal(m); });
     node_.subscribe<nav_msgs::msg::Odometry>(
-        "odom", Qos::best_effort(), [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) {
+        "odom", Qos::best_effort(),
+        [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) {
           const auto state = conversions::from_msg(m);
           if (!state) return;  // the tracker reports bad odometry
           navigator_.on_odometry(*state, node_.monotonic_ns());
-        });
+        },
+        Writers::one("odom"));
     node_.subscribe<msg::BezierTrajectory>(
         "trajectory", Qos::reliable_last(),
-        [this](const msg::BezierTrajectory& m, const MessageInfo& info) {
-          on_trajectory(m, info);
-        });
+        [this](const msg::BezierTrajectory& m, const MessageInfo& info) { on_trajectory(m, info); },
+        Writers::one("trajectory"));
     node_.subscribe<msg::StageReport>(
         "stage_report", Qos::reliable_last(50),
-        [this](const msg::StageReport& m, const MessageInfo&) { on_report(m); });
+        [this](const msg::StageReport& m, const MessageInfo&) { on_report(m); },
+        Writers::one_each<msg::StageReport>("stage_report", &reporting_stage));
+    node_.subscribe<msg::TrackingState>(
+        "tracking_state", Qos::best_effort(),
+        [this](const msg::TrackingState& m, const MessageInfo&) {
+          navigator_.on_tracking(m.request_id(), node_.monotonic_ns());
+          carry_out();
+        },
+        Writers::one("tracking_state"));
   }
 
   void on_goal(const geometry_msgs::msg::PoseStamped& m) {
@@ -101,13 +162,11 @@ class NavigatorComponent : public Component {
   void on_trajectory(const msg::BezierTrajectory& m, const MessageInfo& info) {
     auto candidate = candidate_of(m);
     if (!candidate) {
-      navigator_.on_report(m.request().id(), StageRole::trajectory_optimizer, candidate.error(),
-                           node_.monotonic_ns());
       reporter_.failed(m.request().id(), candidate.error());
+      navigator_.on_bad_answer(m.request().id(), candidate.error());
     } else {
-      wire_ns_ = wire_time_ns(m.header(), info);
-      candidate_ = m;
-      navigator_.on_trajectory(*std::move(candidate), node_.monotonic_ns());
+      const std::uint64_t number = answers_.keep(m, wire_time_ns(m.header(), info));
+      navigator_.on_trajectory(*std::move(candidate), number, node_.monotonic_ns());
     }
     carry_out();
   }
@@ -129,7 +188,7 @@ class NavigatorComponent : public Component {
       if (to_string(code) == m.code()) outcome.code = code;
     }
     navigator_.on_report(m.request_id(), conversions::stage_role_of(m.stage()), outcome,
-                         node_.monotonic_ns());
+                         node_.monotonic_ns(), moved_m(m));
     carry_out();
   }
 
@@ -152,16 +211,41 @@ class NavigatorComponent : public Component {
     reporter_.send(requests_, m);
   }
 
-  void publish(const CommittedTrajectory& committed) {
+  void publish(const Commit& commit) {
+    const CommittedTrajectory& committed = commit.trajectory;
+    const auto* answer = answers_.find(commit.answer);
     msg::CommittedTrajectory m;
     m.header(conversions::make_header(node_.now_ns()));
-    m.nominal(candidate_);
+    m.nominal(answer != nullptr ? answer->message : nominal_of(committed));
     conversions::fill_msg(committed, m);
-    const std::int64_t start_ns = to_wall_ns(committed.start_time_ns());
-    m.start_time(conversions::to_stamp(start_ns));
+    m.start_time(conversions::to_stamp(to_wall_ns(committed.start_time_ns())));
     reporter_.send(commits_, m);
-    reporter_.answered(committed.id(), {.wire_ns = wire_ns_, .compute_ns = 0});
+    reporter_.answered(committed.id(), {.wire_ns = answer != nullptr ? answer->wire_ns : 0});
   }
+
+  /// Of a trajectory that is no stage's answer.
+  msg::BezierTrajectory nominal_of(const CommittedTrajectory& committed) const {
+    const CertifiedTrajectory& nominal = committed.nominal();
+    PlanRequest request;
+    request.id = committed.id();
+    request.start = nominal.start();
+    request.goal = nominal.goal();
+    request.goal_yaw_rad = request.start_yaw_rad = committed.yaw_rad();
+    request.limits = nominal.limits();
+    msg::BezierTrajectory m;
+    m.header(conversions::make_header(node_.now_ns()));
+    m.request(conversions::to_msg(request));
+    m.request().header(m.header());
+    m.request().start_time(conversions::to_stamp(to_wall_ns(committed.start_time_ns())));
+    m.implementation(kBrakeName);
+    m.map_version(committed.map_version());
+    m.pieces(conversions::to_msg(nominal.trajectory()));
+    m.polytopes(conversions::to_msg(nominal.polytopes()));
+    m.certificate(conversions::to_msg(nominal.certificate()));
+    return m;
+  }
+
+  void publish(const Complaint& complaint) { reporter_.failed(complaint.id, complaint.reason); }
 
   void publish(const StateOrder& order) {
     auto& m = state_message_;
@@ -183,9 +267,9 @@ class NavigatorComponent : public Component {
   Publisher<msg::CommittedTrajectory> commits_;
   Publisher<msg::NavigatorState> states_;
   Publisher<msg::NavigatorState> alive_;
-  msg::BezierTrajectory candidate_;  // the newest certified one, to commit
+  Answers answers_;
   msg::NavigatorState state_message_;
-  std::int64_t wire_ns_ = 0;
+  MapSubscription map_;
 };
 
 }  // namespace

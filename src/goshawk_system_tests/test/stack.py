@@ -61,14 +61,14 @@ class States:
 class Stack:
     """Every stage launched in a world of its own, with the topics that tell what happens."""
 
-    def __init__(self, sandbox, file="flight", ros_args=(), env=None):
+    def __init__(self, sandbox, file="flight", ros_args=(), env=None, options=()):
         self.sandbox = sandbox
         self.world = sandbox.folder / "world.bt"
         made = sandbox.goshawk("world", self.world, "--json")
         if made.status != 0:
             raise AssertionError(f"the world could not be made: {made}")
         self.launch = Launch(sandbox, file, "-p", f"map_server:map_file:={self.world}", *ros_args,
-                             env=env)
+                             env=env, options=options)
         self.reports = self.echo("stage_report")
         self.states = States(self.echo("navigator_state"))
         self.odom = self.echo("odom", "--no-arr")

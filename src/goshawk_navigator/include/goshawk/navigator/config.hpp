@@ -24,6 +24,9 @@ struct Config {
   double rest_speed_m_s = 0.15;
   double settle_timeout_s = 5.0;
   double odometry_timeout_s = 0.5;
+  bool require_map = true;
+  double map_wait_s = 0.5;
+  double map_retry_s = 5.0;
 
   Limits limits() const {
     return {.v_max_m_s = v_max_m_s,
@@ -62,6 +65,20 @@ void describe_request(Self& c, Visitor& visit) {
         AtRunTime{Anything{}});
 }
 
+template <typename Self, typename Visitor>
+void describe_map(Self& c, Visitor& visit) {
+  visit("require_map", c.require_map, "",
+        "only what the map shows free is committed; false: before any map came, trajectories are "
+        "committed unchecked",
+        Anything{});
+  visit("map_wait_s", c.map_wait_s, "s",
+        "how long a trajectory waits for the map version that it names, before it is refused",
+        AtRunTime{Range{0.0, 60.0}});
+  visit("map_retry_s", c.map_retry_s, "s",
+        "how long a goal that failed because of the map is planned for again when the map changes",
+        AtRunTime{Range{0.0, 3600.0}});
+}
+
 }  // namespace detail
 
 template <typename Self, typename Visitor>
@@ -70,7 +87,8 @@ void describe(Self& c, Visitor&& visit) {
   detail::describe_request(c, visit);
   visit("plan_timeout_s", c.plan_timeout_s, "s", "a plan that takes longer is requested again",
         AtRunTime{Range{0.01, 600.0}});
-  visit("max_attempts", c.max_attempts, "", "how often to ask for a plan before giving up",
+  visit("max_attempts", c.max_attempts, "",
+        "how often a plan may fail for a reason that time can mend before the goal is given up",
         AtRunTime{Range{1, 100}});
   visit("replan_lead_s", c.replan_lead_s, "s",
         "a plan from a moving start begins this far ahead on the present trajectory",
@@ -86,6 +104,7 @@ void describe(Self& c, Visitor&& visit) {
         AtRunTime{Range::positive(600.0)});
   visit("odometry_timeout_s", c.odometry_timeout_s, "s", "odometry older than this is not used",
         Range::positive(60.0));
+  detail::describe_map(c, visit);
 }
 
 }  // namespace goshawk::navigator

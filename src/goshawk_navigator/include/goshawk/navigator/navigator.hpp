@@ -1,21 +1,30 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
-#include "goshawk/core/committed_trajectory.hpp"
+#include "goshawk/core/grid_geometry.hpp"
 #include "goshawk/core/plan_request.hpp"
 #include "goshawk/core/stage_role.hpp"
 #include "goshawk/core/vehicle.hpp"
 #include "goshawk/navigator/config.hpp"
+#include "goshawk/navigator/remedy.hpp"
+#include "goshawk/navigator/schedule.hpp"
 
 namespace goshawk::navigator {
 
 enum class State { idle, planning, flying, arrived, failed };
 std::string_view to_string(State state);
+
+struct Goal {
+  Vec3 position_map = Vec3::Zero();
+  double yaw_rad = 0.0;
+};
 
 /// What the navigator tells everyone.
 struct StateOrder {
@@ -25,17 +34,38 @@ struct StateOrder {
   Vec3 goal_map = Vec3::Zero();
   Error reason{ErrorCode::ok, ""};
 };
+/// A trajectory to fly.
+struct Commit {
+  CommittedTrajectory trajectory;
+  std::uint64_t answer = 0;  // number of the answer that it is; 0: the navigator's own, to brake
+};
+/// An answer that is not flown. The request goes on.
+struct Complaint {
+  std::uint64_t id = 0;  // of the request
+  Error reason;
+};
 /// What the navigator wants sent; the component turns it into messages.
-using Order = std::variant<PlanRequest, CommittedTrajectory, StateOrder>;
+using Order = std::variant<PlanRequest, Commit, StateOrder, Complaint>;
+
+/// What a navigator needs of the one that ran before it.
+struct Memory {
+  State state = State::idle;
+  std::uint64_t newest_id = 0;
+  Goal goal;
+  bool open = false;      // no committed trajectory leads to the goal yet
+  std::vector<Leg> legs;  // by start
+};
 
 /// From goals to committed trajectories. Knows no middleware and no clock: every event brings the
 /// time, and leaves orders to take.
 ///
 /// At rest it plans from where the vehicle hovers. In flight it plans from the state that the
-/// present trajectory will have replan_lead_s from now, and commits only what comes before that
-/// moment; the present trajectory ends at rest in any case, so a plan that fails or comes late
-/// never endangers the vehicle. A request without an answer is asked again, then given up with the
-/// name of the stage that was silent.
+/// vehicle will have replan_lead_s from now, and commits only what comes before that moment. If
+/// nothing can be planned from there, it asks for a later start, then commits a way to rest along
+/// the path that is flown and plans from there: the newest goal is pursued until a stage says that
+/// no start can help, and what is flown always ends at rest. Answers are checked against the
+/// request and the map; a bad one is refused, and a good one is waited for. A request without an
+/// answer is asked again, then given up with the name of the stage that was silent.
 class Navigator {
  public:
   /// @param first_id number of the first request, above 0: unique over restarts
@@ -45,14 +75,28 @@ class Navigator {
   /// @return invalid_parameter: out of range, or what cannot change at run time; then as before
   Status reconfigure(const Config& config);
 
+  /// Goes on where another navigator ended, before any other event: what is not yet flown to its end
+  /// is committed again, for a tracker that has not had it.
+  void resume(Memory memory, std::int64_t now_ns);
+  Memory memory() const;
+
   /// @param yaw_rad heading at the goal, map x to y @return invalid_input if not finite
   Status on_goal(const Vec3& goal_map, double yaw_rad, std::int64_t now_ns);
   void on_odometry(const RigidBodyState& vehicle, std::int64_t now_ns);
+  /// What is flown is checked against it at once. @pre grid->check() ok
+  void on_map(std::shared_ptr<const VoxelGrid> grid, std::int64_t now_ns);
   /// An answer to a request; others than the open one's are ignored.
   /// @param candidate without start time and yaw, which are set here
-  void on_trajectory(Commitment candidate, std::int64_t now_ns);
+  /// @param number of this answer, above 0: the commit that it becomes names it
+  void on_trajectory(Commitment candidate, std::uint64_t number, std::int64_t now_ns);
+  /// An answer to a request that is no certified trajectory: counted. The caller has said so.
+  void on_bad_answer(std::uint64_t id, const Error& why);
   /// A stage has answered a request: with ok, or with why not.
-  void on_report(std::uint64_t id, StageRole stage, const Error& outcome, std::int64_t now_ns);
+  /// @param goal_moved_m how far the search says that it moved the goal
+  void on_report(std::uint64_t id, StageRole stage, const Error& outcome, std::int64_t now_ns,
+                 double goal_moved_m = 0.0);
+  /// What the tracker says that it follows or holds the end of; 0: nothing.
+  void on_tracking(std::uint64_t id, std::int64_t now_ns);
   /// Regularly, some 50 times a second: timeouts and arrival.
   void tick(std::int64_t now_ns);
 
@@ -60,20 +104,46 @@ class Navigator {
   State state() const { return state_; }
 
  private:
-  struct Goal {
-    Vec3 position_map = Vec3::Zero();
-    double yaw_rad = 0.0;
+  struct Failure {
+    Error reason;
+    std::int64_t act_ns;  // until then a good answer still counts
   };
   struct Open {  // the request that waits for its answer
-    std::uint64_t id = 0;
+    PlanRequest request;
     std::int64_t asked_ns = 0;
-    std::optional<std::int64_t> switch_ns;    // moving start: when the new trajectory must begin
     StageRole last_stage = StageRole::other;  // that answered ok
+    double goal_moved_m = 0.0;
+    int refused = 0;  // answers
+    std::string why_refused = {};
+    std::optional<Failure> failure = {};
+
+    bool from_motion() const { return request.start.velocity.norm() > 1e-3; }
+    std::optional<std::int64_t> too_late_ns() const;
   };
-  struct Flight {
-    CommittedTrajectory committed;
-    std::int64_t end_ns = 0;
+  struct Pending {  // an answer that waits for its map
+    Commitment candidate;
+    std::uint64_t number;
+    std::int64_t until_ns;
+  };
+  struct MapRetry {  // a goal that was given up, but another map may help
+    std::int64_t until_ns;
+    std::int64_t changed_after_ns;
+  };
+  struct Pursuit {  // of the newest goal
     Goal goal;
+    bool open = false;  // no committed trajectory leads to it yet
+    int failures = 0;   // that only time can mend
+    int starts = 0;     // that did not do
+    double lead_s = 0.0;
+    std::int64_t not_before_ns = 0;  // the next start
+    std::int64_t retry_ns = 0;
+    std::int64_t wait_begin_ns = 0;  // since when a plan waits for the vehicle to come to rest
+    std::optional<std::int64_t> revoked_ns = {};    // since when another goal is flown to
+    std::optional<MapRetry> map_retry = {};         // it failed because of the map
+  };
+  struct Tracked {
+    std::uint64_t id;
+    std::int64_t ns;
   };
   struct Start {  // what a plan begins with
     FlatState state;
@@ -82,33 +152,54 @@ class Navigator {
     std::optional<std::int64_t> time_ns = {};  // none: at rest, whenever
   };
 
+  // planning.cpp
   void plan(std::int64_t now_ns);
-  Start start_on(const Flight& flight, std::int64_t time_ns) const;
-  Start start_at_rest() const;
+  Start start_in_flight(std::int64_t now_ns) const;
+  Start start_at_rest(std::int64_t now_ns) const;
   void ask(const Start& start, std::int64_t now_ns);
   void drop_open();
-  void plan_again(const Error& reason, std::int64_t now_ns);
-  void give_up(const Error& reason);
-  void tracker_failed(const Error& reason, std::int64_t now_ns);
+  void check_open(std::int64_t now_ns);
+  void act_on(const Error& reason, std::int64_t now_ns);
+  void try_other_start(const Error& reason, std::int64_t now_ns);
+  void plan_again(const Error& reason, double delay_s, std::int64_t now_ns);
+  void give_up(const Error& reason, std::int64_t now_ns);
+  bool brake(std::int64_t now_ns);
+  bool brakes() const { return schedule_.last() != nullptr && schedule_.last()->brakes; }
+  void check_revoked(std::int64_t now_ns);
+  // answers.cpp
+  void take_answer(Commitment candidate, std::uint64_t number, std::int64_t now_ns);
+  void refuse_answer(const Error& why);
+  bool wait_for_map(const Commitment& candidate, std::uint64_t number, std::int64_t now_ns);
+  void commit(CommittedTrajectory committed, std::uint64_t number, std::int64_t now_ns);
+  void check_pending(std::int64_t now_ns);
+  void on_tracker_report(std::uint64_t id, const Error& outcome, std::int64_t now_ns);
+  void check_map_retry(std::int64_t now_ns);
+  void check_legs(std::int64_t now_ns);
+  void blocked(const Error& why, std::int64_t now_ns);
+  void pursue_again(const Error& why, std::int64_t now_ns);
+  // navigator.cpp
   void check_arrival(std::int64_t now_ns);
-  void check_silence(std::int64_t now_ns);
   bool at_rest() const;
   bool odometry_is_fresh(std::int64_t now_ns) const;
-  void enter(State state, Error reason = {ErrorCode::ok, ""});
+  std::uint64_t flown_id(std::int64_t now_ns) const;
+  void say_what_is_flown(std::int64_t now_ns);
+  void enter(State state, std::int64_t now_ns, Error reason = {ErrorCode::ok, ""});
 
   Config config_;
   std::uint64_t next_id_;
   std::uint64_t newest_id_ = 0;  // of the newest request
   State state_ = State::idle;
-  Goal goal_;
-  bool goal_open_ = false;  // a goal that no committed trajectory leads to yet
-  int attempts_ = 0;
-  std::int64_t retry_ns_ = 0;       // not before this
-  std::int64_t wait_begin_ns_ = 0;  // since when a plan waits for the vehicle to come to rest
-  double lead_s_;
+  Pursuit pursuit_;
   std::optional<Open> open_;
+  std::optional<Pending> pending_;
   std::uint64_t dropped_id_ = 0;  // a request that nobody needs an answer to any more
-  std::optional<Flight> flight_;
+  Schedule schedule_;
+  std::shared_ptr<const VoxelGrid> map_;
+  std::optional<std::int64_t> map_changed_ns_;
+  std::optional<Tracked> tracked_;
+  std::uint64_t lost_id_ = 0;  // the tracker has left it
+  std::uint64_t said_flown_id_ = 0;
+  Error said_reason_{ErrorCode::ok, ""};
   RigidBodyState vehicle_;
   std::optional<std::int64_t> odometry_ns_;
   std::vector<Order> orders_;

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "goshawk/core/error.hpp"
+
+namespace goshawk::navigator {
+
+/// What may help after a plan has failed.
+enum class Remedy {
+  wait,         // it passes by itself: ask again
+  other_start,  // plan from elsewhere: later on what is flown, or from rest
+  other_map,    // only the map can change it
+  none,
+};
+
+/// @param from_motion the plan was to begin in flight
+Remedy remedy_of(ErrorCode code, bool from_motion);
+
+}  // namespace goshawk::navigator

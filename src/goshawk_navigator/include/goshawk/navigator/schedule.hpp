@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "goshawk/core/committed_trajectory.hpp"
+
+namespace goshawk::navigator {
+
+/// A committed trajectory, and how it stands.
+struct Leg {
+  CommittedTrajectory committed;
+  bool brakes = false;    // it leads to rest, and to no goal
+  bool accepted = false;  // by the tracker
+
+  std::uint64_t id() const { return committed.id(); }
+  std::int64_t start_ns() const { return committed.start_time_ns(); }
+  std::int64_t end_ns() const;
+  /// At its end after it, at its start before it. @param time_ns as start_ns()
+  FlatState at(std::int64_t time_ns) const;
+};
+
+/// What is flown now, and what has been committed for later: the tracker's queue, as the navigator
+/// knows it. A leg ends when the next one begins.
+class Schedule {
+ public:
+  /// Those that begin then or later are replaced, as in the tracker.
+  void add(Leg leg);
+  /// The tracker did not take it: neither it nor what follows on it is flown.
+  void drop_from(std::uint64_t id);
+  /// Nothing of it is flown any more.
+  void clear() { legs_.clear(); }
+  /// Forgets legs that another has replaced by now.
+  void forget_before(std::int64_t now_ns);
+
+  /// @return what is flown, or held at its end, then; nullptr before the first leg
+  const Leg* at(std::int64_t time_ns) const;
+  Leg* find(std::uint64_t id);
+  /// @return the newest, nullptr if there is none
+  const Leg* last() const { return legs_.empty() ? nullptr : &legs_.back(); }
+  bool empty() const { return legs_.empty(); }
+  const std::vector<Leg>& legs() const { return legs_; }
+  /// When the leg is replaced by the next one, or ends. @param leg one of legs()
+  std::int64_t until_ns(const Leg& leg) const;
+  /// From then on the vehicle rests. @pre not empty
+  std::int64_t end_ns() const { return legs_.back().end_ns(); }
+  /// Something is flown then, or will be.
+  bool moves(std::int64_t time_ns) const { return !legs_.empty() && time_ns < end_ns(); }
+
+ private:
+  std::vector<Leg> legs_;  // by start
+};
+
+}  // namespace goshawk::navigator

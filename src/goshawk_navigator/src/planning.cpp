@@ -1,0 +1,234 @@
+// How the navigator asks for plans, and what it does when one fails.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "times.hpp"
+#include "goshawk/core/free_curve.hpp"
+#include "goshawk/navigator/brake.hpp"
+#include "goshawk/navigator/navigator.hpp"
+
+namespace goshawk::navigator {
+namespace {
+
+// A plan that begins in flight must come this long before, so that the tracker has it.
+constexpr double kSwitchSlack_s = 0.02;
+
+// No way to rest was found on what is flown: again after this time.
+constexpr double kBrakeAgain_s = 0.1;
+// A stage may have planned in a map that is older than the newest by so much.
+constexpr double kMapDelay_s = 1.0;
+// A revoked goal is flown to for no more leads than these.
+constexpr double kMostLeads = 3.0;
+
+constexpr std::array kPlanningStages{StageRole::path_search, StageRole::corridor_builder,
+                                     StageRole::trajectory_optimizer};
+
+// The stage after the last one that answered.
+StageRole next_stage(StageRole last) {
+  const auto at = std::ranges::find(kPlanningStages, last);
+  if (at == kPlanningStages.end()) return kPlanningStages.front();
+  return at + 1 == kPlanningStages.end() ? kPlanningStages.back() : *(at + 1);
+}
+
+}  // namespace
+
+std::optional<std::int64_t> Navigator::Open::too_late_ns() const {
+  if (!request.start_time_ns) return {};
+  return *request.start_time_ns - to_ns(kSwitchSlack_s);
+}
+
+// Where the next plan begins: a little ahead on what is flown, or at rest.
+void Navigator::plan(std::int64_t now_ns) {
+  if (!pursuit_.open || open_ || now_ns < pursuit_.retry_ns) return;
+  if (schedule_.moves(now_ns)) return ask(start_in_flight(now_ns), now_ns);
+  // Odometry that was only just discovered, a trajectory that is just ending, a vehicle that brakes
+  // by itself: all of these pass.
+  if (odometry_is_fresh(now_ns) && at_rest()) return ask(start_at_rest(now_ns), now_ns);
+  if (now_ns - pursuit_.wait_begin_ns < to_ns(config_.settle_timeout_s)) return;
+  give_up(fail(ErrorCode::tracking_lost,
+               odometry_is_fresh(now_ns)
+                   ? "the vehicle moves without a trajectory and does not come to rest"
+                   : "no odometry comes, so there is nowhere to plan from: is the vehicle, or the "
+                     "simulator, running?"),
+          now_ns);
+}
+
+Navigator::Start Navigator::start_in_flight(std::int64_t now_ns) const {
+  const std::int64_t time_ns = std::max({now_ns + to_ns(pursuit_.lead_s), pursuit_.not_before_ns,
+                                         schedule_.legs().front().start_ns()});
+  const Leg& leg = *schedule_.at(time_ns);
+  Start start{
+      .state = leg.at(time_ns), .yaw_rad = yaw_of(vehicle_.q_map_base), .time_ns = time_ns};
+  start.state.jerk.setZero();
+  if (time_ns >= leg.end_ns()) start.state = {.position = start.state.position};
+  // Without a curve the tracker turns as fast as it can: where to is known, not how far it is.
+  if (const auto& curve = leg.committed.yaw_curve()) {
+    const double t_s = double(time_ns - leg.start_ns()) * 1e-9;
+    start.yaw_rad = curve->yaw_rad(t_s);
+    start.yaw_rate_rad_s = curve->rate_rad_s(t_s);
+  }
+  return start;
+}
+
+Navigator::Start Navigator::start_at_rest(std::int64_t now_ns) const {
+  const Vec3& here = vehicle_.position_map;
+  const Leg* leg = schedule_.at(now_ns);
+  const Vec3 end = leg != nullptr ? leg->at(leg->end_ns()).position : here;
+  const bool holds_end = (here - end).norm() < config_.arrival_tolerance_m;
+  return {.state = {.position = holds_end ? end : here},
+          .yaw_rad = yaw_of(vehicle_.q_map_base),
+          .yaw_rate_rad_s = (vehicle_.q_map_base * vehicle_.angular_velocity_base).z()};
+}
+
+void Navigator::ask(const Start& start, std::int64_t now_ns) {
+  newest_id_ = next_id_++;
+  PlanRequest request;
+  request.id = newest_id_;
+  request.stamp_ns = now_ns;
+  request.start_time_ns = start.time_ns;
+  request.start = start.state;
+  request.start_yaw_rad = start.yaw_rad;
+  request.start_yaw_rate_rad_s = start.yaw_rate_rad_s;
+  request.goal.position = pursuit_.goal.position_map;
+  request.goal_yaw_rad = pursuit_.goal.yaw_rad;
+  request.limits = config_.limits();
+  request.deadline_s = config_.plan_timeout_s;
+  request.supersedes = std::exchange(dropped_id_, 0);
+  request.unknown = config_.unknown;
+  open_ = Open{.request = request, .asked_ns = now_ns};
+  if (const auto too_late_ns = open_->too_late_ns()) {
+    const double left_s = double(*too_late_ns - now_ns) * 1e-9;
+    request.deadline_s = std::min(request.deadline_s, std::max(left_s, 1e-3));
+  }
+  orders_.push_back(std::move(request));
+  enter(schedule_.moves(now_ns) ? State::flying : State::planning, now_ns);
+}
+
+// No answer to the open request is needed any more: the next one says so.
+void Navigator::drop_open() {
+  if (open_ && !open_->failure) dropped_id_ = open_->request.id;
+  open_.reset();
+  pending_.reset();
+}
+
+void Navigator::check_open(std::int64_t now_ns) {
+  if (!open_) return;
+  if (open_->failure) {
+    if (now_ns < open_->failure->act_ns) return;
+    const Error reason = open_->failure->reason;
+    return act_on(reason, now_ns);
+  }
+  const std::uint64_t id = open_->request.id;
+  const std::string refused =
+      open_->refused == 0 ? ""
+                          : fmt::format("; {} answers were refused, the last because {}",
+                                        open_->refused, open_->why_refused);
+  const auto stage = to_string(next_stage(open_->last_stage));
+  if (const auto too_late_ns = open_->too_late_ns(); too_late_ns && now_ns > *too_late_ns) {
+    return act_on(fail(ErrorCode::deadline_exceeded,
+                       fmt::format("{} did not answer request {} before the moment that it begins "
+                                   "at{}",
+                                   stage, id, refused)),
+                  now_ns);
+  }
+  if (now_ns - open_->asked_ns < to_ns(config_.plan_timeout_s)) return;
+  act_on(fail(ErrorCode::stage_silent,
+              fmt::format("{} did not answer request {} within {:.3g} s: is it running, in this "
+                          "domain and namespace?{}",
+                          stage, id, config_.plan_timeout_s, refused)),
+         now_ns);
+}
+
+// The open request has failed.
+void Navigator::act_on(const Error& reason, std::int64_t now_ns) {
+  const bool late = reason.code == ErrorCode::deadline_exceeded;
+  const bool from_motion = open_->from_motion();
+  const std::int64_t asked_ns = open_->asked_ns;
+  const Remedy remedy = remedy_of(reason.code, from_motion);
+  drop_open();
+  if (remedy == Remedy::other_start || (late && from_motion)) {
+    return try_other_start(reason, now_ns);
+  }
+  if (remedy == Remedy::wait) {
+    return plan_again(reason, late ? 0.0 : kRetryDelay_s, now_ns);
+  }
+  if (remedy == Remedy::other_map && !pursuit_.map_retry) {
+    pursuit_.map_retry = MapRetry{.until_ns = now_ns + to_ns(config_.map_retry_s),
+                                  .changed_after_ns = asked_ns - to_ns(kMapDelay_s)};
+  }
+  give_up(reason, now_ns);
+}
+
+// In flight: a later start, then a slower one, then one at rest.
+void Navigator::try_other_start(const Error& reason, std::int64_t now_ns) {
+  ++pursuit_.starts;
+  enter(State::flying, now_ns, {ErrorCode::ok, "planning from a later start: " + reason.message});
+  if (pursuit_.starts == 1) {
+    pursuit_.lead_s *= 2.0;
+  } else if (brakes()) {
+    pursuit_.not_before_ns = schedule_.end_ns();
+  } else if (brake(now_ns)) {
+    const Leg& leg = *schedule_.last();
+    pursuit_.not_before_ns = leg.start_ns() + (leg.end_ns() - leg.start_ns()) / 2;
+  } else {
+    pursuit_.starts = 0;
+    pursuit_.lead_s = config_.replan_lead_s;
+    pursuit_.retry_ns = now_ns + to_ns(kBrakeAgain_s);
+  }
+  plan(now_ns);
+}
+
+void Navigator::plan_again(const Error& reason, double delay_s, std::int64_t now_ns) {
+  drop_open();
+  if (++pursuit_.failures >= config_.max_attempts) {
+    return give_up({reason.code,
+                    fmt::format("{} (after {} attempts)", reason.message, pursuit_.failures)},
+                   now_ns);
+  }
+  pursuit_.retry_ns = now_ns + to_ns(delay_s);
+  plan(now_ns);
+}
+
+void Navigator::give_up(const Error& reason, std::int64_t now_ns) {
+  drop_open();
+  pursuit_.open = false;
+  pursuit_.revoked_ns.reset();
+  enter(State::failed, now_ns, reason);
+}
+
+// Commits a way to rest on what is flown. @return whether there is one
+bool Navigator::brake(std::int64_t now_ns) {
+  const std::int64_t begin_ns = now_ns + to_ns(config_.commit_lead_s);
+  const Leg* leg = schedule_.at(begin_ns);
+  if (leg == nullptr || leg->brakes || begin_ns >= leg->end_ns()) return false;
+  const double from_s = double(begin_ns - leg->start_ns()) * 1e-9;
+  auto way = brake_along(leg->committed, from_s, [this](const Trajectory& trajectory) {
+    return map_ == nullptr ||
+           !find_obstruction(*map_, trajectory, 0.0, trajectory.duration_s());
+  });
+  if (!way) return false;
+  const double yaw_rad = leg->committed.yaw_at(from_s + way->duration_s() / 2.0);
+  auto committed = CommittedTrajectory::make({.id = next_id_++,
+                                              .nominal = *std::move(way),
+                                              .start_time_ns = begin_ns,
+                                              .map_version = leg->committed.map_version(),
+                                              .yaw_rad = yaw_rad});
+  if (!committed) return false;
+  orders_.push_back(Commit{*committed, 0});
+  schedule_.add({.committed = *std::move(committed), .brakes = true});
+  return true;
+}
+
+// However planning goes, the vehicle does not fly on to a goal that was revoked.
+void Navigator::check_revoked(std::int64_t now_ns) {
+  if (!pursuit_.open || !pursuit_.revoked_ns || brakes() || !schedule_.moves(now_ns)) return;
+  if (now_ns - *pursuit_.revoked_ns < to_ns(kMostLeads * config_.replan_lead_s)) return;
+  if (!brake(now_ns)) return;
+  drop_open();
+  plan(now_ns);
+}
+
+}  // namespace goshawk::navigator

@@ -1,0 +1,52 @@
+#include "goshawk/navigator/schedule.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace goshawk::navigator {
+
+std::int64_t Leg::end_ns() const {
+  return start_ns() + std::llround(committed.flown().duration_s() * 1e9);
+}
+
+FlatState Leg::at(std::int64_t time_ns) const {
+  const Trajectory& flown = committed.flown();
+  const double t_s = double(time_ns - start_ns()) * 1e-9;
+  return flown.sample(std::clamp(t_s, 0.0, flown.duration_s()));
+}
+
+void Schedule::add(Leg leg) {
+  std::erase_if(legs_, [&](const Leg& other) { return other.start_ns() >= leg.start_ns(); });
+  legs_.push_back(std::move(leg));
+}
+
+void Schedule::drop_from(std::uint64_t id) {
+  legs_.erase(std::ranges::find(legs_, id, &Leg::id), legs_.end());
+}
+
+void Schedule::forget_before(std::int64_t now_ns) {
+  const auto next = std::ranges::find_if(
+      legs_, [&](const Leg& leg) { return leg.start_ns() > now_ns; });
+  if (next - legs_.begin() > 1) legs_.erase(legs_.begin(), next - 1);
+}
+
+const Leg* Schedule::at(std::int64_t time_ns) const {
+  const Leg* flown = nullptr;
+  for (const Leg& leg : legs_) {
+    if (leg.start_ns() <= time_ns) flown = &leg;
+  }
+  return flown;
+}
+
+Leg* Schedule::find(std::uint64_t id) {
+  const auto leg = std::ranges::find(legs_, id, &Leg::id);
+  return leg == legs_.end() ? nullptr : &*leg;
+}
+
+std::int64_t Schedule::until_ns(const Leg& leg) const {
+  const auto next = &leg - legs_.data() + 1;
+  const bool is_last = std::size_t(next) == legs_.size();
+  return is_last ? leg.end_ns() : std::min(leg.end_ns(), legs_[std::size_t(next)].start_ns());
+}
+
+}  // namespace goshawk::navigator

@@ -1,0 +1,170 @@
+// What becomes of a goal when stages, tracker, vehicle or odometry fail.
+#include "harness.hpp"
+
+namespace goshawk::navigator {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(Navigator, AFailedReplanLeavesTheVehicleOnItsTrajectory) {
+  Harness h;
+  h.goal(kGoal);
+  h.answer();
+  h.pass(1.0);
+  h.goal(Vec3(90, 0, 1));
+  h.fails(ErrorCode::goal_outside, StageRole::path_search, "goal is outside the map");
+  h.pass(0.2);
+  EXPECT_EQ(h.last().state, State::failed);
+  EXPECT_EQ(h.last().reason.code, ErrorCode::goal_outside);
+  EXPECT_THAT(h.last().reason.message, HasSubstr("path_search: goal is outside"));
+  h.pass(10.0);
+  EXPECT_EQ(h.commits.size(), 1u);
+  EXPECT_EQ(h.navigator.state(), State::failed) << "it rests at the earlier goal, not at this one";
+  h.goal(kHome);
+  EXPECT_EQ(h.plans.back().start.position, kGoal);
+}
+
+TEST(Navigator, NamesTheStageThatIsSilentAndGivesUpInTheEnd) {
+  Config config;
+  config.max_attempts = 3;
+  Harness h(config);
+  h.goal(kGoal);
+  h.navigator.on_report(h.plans.back().id, StageRole::path_search, ok(), h.now);
+  h.pass(1.5);
+  EXPECT_EQ(h.plans.size(), 2u) << "asked again";
+  h.navigator.on_report(h.plans.back().id, StageRole::path_search, ok(), h.now);
+  h.pass(1.2);
+  h.navigator.on_report(h.plans.back().id, StageRole::path_search, ok(), h.now);
+  h.pass(5.0);
+  EXPECT_EQ(h.plans.size(), 3u);
+  EXPECT_EQ(h.last().state, State::failed);
+  EXPECT_EQ(h.last().reason.code, ErrorCode::stage_silent);
+  EXPECT_THAT(h.last().reason.message, HasSubstr("corridor_builder did not answer"));
+}
+
+TEST(Navigator, FliesWhenARestartedStageAnswersALaterAttempt) {
+  Harness h;
+  h.goal(kGoal);
+  h.pass(2.5);
+  ASSERT_GE(h.plans.size(), 2u);
+  h.navigator.on_trajectory(h.solve(h.plans[0]), 7, h.now);
+  h.take();
+  EXPECT_TRUE(h.commits.empty()) << "an answer to a request that was given up is ignored";
+  h.answer();
+  EXPECT_EQ(h.navigator.state(), State::flying);
+}
+
+TEST(Navigator, AsksAgainIfTheMapHasNotComeYetButNotIfThereIsNoPath) {
+  Harness h;
+  h.pass(2.0);  // the map has not changed for a while
+  h.goal(kGoal);
+  h.fails(ErrorCode::no_map, StageRole::path_search);
+  h.pass(0.5);
+  EXPECT_EQ(h.plans.size(), 2u);
+  h.fails(ErrorCode::no_path, StageRole::path_search);
+  h.pass(3.0);
+  EXPECT_EQ(h.plans.size(), 2u);
+  EXPECT_EQ(h.last().reason.code, ErrorCode::no_path);
+}
+
+TEST(Navigator, DropsAPlanThatCameTooLateAndAsksWithMoreLead) {
+  Harness h;
+  h.goal(kGoal);
+  h.answer(8.0);
+  h.pass(2.0);
+  h.goal(Vec3(2, 3, 1));
+  h.now += kSecond * 4 / 10;  // the moment of the switch has passed
+  h.answer();
+  EXPECT_EQ(h.commits.size(), 1u) << "a trajectory that begins in the past is not committed";
+  ASSERT_EQ(h.plans.size(), 3u) << "asked again at once";
+  EXPECT_EQ(*h.plans[2].start_time_ns, h.now + kSecond * 6 / 10);
+  h.pass(0.4);  // too late for 0.3 s, early enough for 0.6 s
+  h.answer();
+  EXPECT_EQ(h.commits.size(), 2u);
+}
+
+TEST(Navigator, DoesNotCommitATrajectoryThatDoesNotEndAtRest) {
+  Harness h;
+  h.goal(kGoal);
+  PlanRequest through = h.plans[0];
+  through.goal.velocity = Vec3(1, 0, 0);
+  h.navigator.on_trajectory(h.solve(through), 1, h.now);
+  h.take();
+  EXPECT_TRUE(h.commits.empty());
+  ASSERT_EQ(h.complaints.size(), 1u);
+  EXPECT_EQ(h.complaints[0].id, h.plans[0].id);
+  EXPECT_EQ(h.complaints[0].reason.code, ErrorCode::not_certified);
+  EXPECT_THAT(h.complaints[0].reason.message, HasSubstr("does not end at rest"));
+  h.answer();
+  EXPECT_EQ(h.commits.size(), 1u) << "a good answer still counts";
+}
+
+TEST(Navigator, PlansAgainFromRestIfTheTrackerRefuses) {
+  Harness h;
+  h.goal(kGoal);
+  h.answer();
+  const std::uint64_t refused = h.commits[0].id();
+  h.flown.clear();  // the vehicle stays where it is
+  h.tracker_says(refused, {ErrorCode::not_at_start, "0.9 m away"});
+  EXPECT_EQ(h.last().state, State::planning);
+  EXPECT_THAT(h.last().reason.message, HasSubstr("0.9 m away"));
+  h.pass(0.5);
+  ASSERT_EQ(h.plans.size(), 2u);
+  EXPECT_EQ(h.plans[1].goal.position, kGoal);
+  h.answer();
+  h.pass(5.0);
+  EXPECT_EQ(h.navigator.state(), State::arrived);
+}
+
+TEST(Navigator, WithoutOdometryNamesWhatIsMissing) {
+  Harness h;
+  h.odometry_comes = false;
+  h.pass(1.0);
+  h.goal(kGoal);
+  h.pass(6.0);
+  EXPECT_TRUE(h.plans.empty());
+  EXPECT_EQ(h.last().state, State::failed);
+  EXPECT_EQ(h.last().reason.code, ErrorCode::tracking_lost);
+  EXPECT_THAT(h.last().reason.message, HasSubstr("odometry"));
+}
+
+TEST(Navigator, WaitsForOdometryThatComesALittleAfterTheGoal) {
+  Harness h;
+  h.odometry_comes = false;
+  h.pass(1.0);
+  h.goal(kGoal);
+  h.pass(1.0);
+  EXPECT_TRUE(h.plans.empty());
+  h.odometry_comes = true;
+  h.pass(0.1);
+  EXPECT_EQ(h.plans.size(), 1u);
+}
+
+TEST(Navigator, DoesNotPlanFromRestWhileTheVehicleMovesByItself) {
+  Harness h;
+  h.navigator.on_odometry(at(kHome, Vec3(1, 0, 0)), h.now);
+  h.goal(kGoal);
+  EXPECT_TRUE(h.plans.empty());
+  h.pass(0.1);  // the harness' vehicle is at rest
+  EXPECT_EQ(h.plans.size(), 1u);
+}
+
+TEST(Navigator, AVehicleThatEndsElsewhereHasNotArrivedAndIsSentAgain) {
+  Config config;
+  config.max_attempts = 1;
+  Harness h(config);
+  h.goal(kGoal);
+  h.answer();
+  h.offset = Vec3(0, 0.5, 0);
+  h.pass(10.0);
+  ASSERT_EQ(h.plans.size(), 2u);
+  EXPECT_EQ(h.plans[1].start.position, kGoal + h.offset) << "from where it is";
+  h.answer();
+  h.offset = Vec3(0, 0.7, 0);  // and off again
+  h.pass(12.0);
+  EXPECT_EQ(h.navigator.state(), State::failed);
+  EXPECT_EQ(h.last().reason.code, ErrorCode::tracking_lost);
+}
+
+}  // namespace
+}  // namespace goshawk::navigator

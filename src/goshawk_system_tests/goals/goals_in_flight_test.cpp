@@ -1,0 +1,63 @@
+// Goals that come in flight, at random moments and to random places of the default world.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <map>
+
+#include "flight_lab.hpp"
+
+namespace goshawk::goals {
+namespace {
+
+int count_of(const char* variable, int otherwise) {
+  const char* text = std::getenv(variable);
+  return text != nullptr ? std::atoi(text) : otherwise;
+}
+
+struct Tally {
+  int sent = 0;
+  int dropped = 0;
+  int stuck = 0;
+  std::map<std::string, int> reasons;
+};
+
+// A first goal from rest, and a second at a random moment of that flight.
+void interrupt(FlightLab& lab, Random& random, Tally& tally) {
+  ASSERT_TRUE(lab.goal(lab.random_place()));
+  ASSERT_TRUE(lab.run(20.0, [&] { return lab.moves() || lab.settled(); }));
+  const double wait_s = random.uniform(0.0, 4.0);
+  lab.run(wait_s, [&] { return !lab.moves(); });
+  if (!lab.moves()) return;
+  ++tally.sent;
+  ASSERT_TRUE(lab.goal(lab.random_place()));
+  if (!lab.run(60.0, [&] { return lab.settled(); })) {
+    ++tally.stuck;
+  } else if (lab.state().state != navigator::State::arrived) {
+    ++tally.dropped;
+    ++tally.reasons[std::string(to_string(lab.state().reason.code))];
+    std::printf("%s\n", lab.state().reason.message.c_str());
+  }
+  lab.run(30.0, [&] { return !lab.moves(); });
+}
+
+TEST(GoalsInFlight, NoneIsDropped) {
+  const int goals = count_of("GOSHAWK_GOALS", 60);
+  Random random(7);
+  FlightLab lab(default_map(), 11);
+  Tally tally;
+  const double begin_s = lab.now_s();
+  while (tally.sent < goals) ASSERT_NO_FATAL_FAILURE(interrupt(lab, random, tally));
+  std::printf("%d goals in flight: %d dropped, %d stuck; %d plans, %d commits, %zu refused, "
+              "%zu lost, largest error %.3f m, fastest %.3f m/s, %d ms of contact, %.0f s flown\n",
+              tally.sent, tally.dropped, tally.stuck, lab.plans(), lab.commits(),
+              lab.refusals.size(), lab.losses.size(), lab.max_error_m(), lab.max_speed_m_s(), lab.contacts(),
+              lab.now_s() - begin_s);
+  for (const auto& loss : lab.losses) std::printf("  lost: %s\n", loss.message.c_str());
+  for (const auto& [code, count] : tally.reasons) std::printf("  %s: %d\n", code.c_str(), count);
+  EXPECT_EQ(tally.dropped, 0);
+  EXPECT_EQ(tally.stuck, 0);
+  EXPECT_EQ(lab.contacts(), 0);
+}
+
+}  // namespace
+}  // namespace goshawk::goals
