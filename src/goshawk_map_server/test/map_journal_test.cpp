@@ -150,8 +150,10 @@ TEST_F(Journal, IsWrittenAnewWhenMostOfItIsObsolete) {
   std::uint64_t version = 0;
   while (version < 40'000) {  // 120 MB, if nothing were given up
     std::vector<JournalBrick> batch = truth.batches[version % 3];
-    for (JournalBrick& brick : batch) newest[brick.corner] = brick, brick.raw[0] = version;
-    for (const JournalBrick& brick : batch) newest[brick.corner] = brick;
+    for (JournalBrick& brick : batch) {
+      brick.raw[0] = version;
+      newest[brick.corner] = brick;
+    }
     ASSERT_TRUE(journal.append(++version, batch));
     if (version % 500 == 0) largest = std::max(largest, std::filesystem::file_size(path_));
   }
