@@ -27,8 +27,9 @@ using testing::IsEmpty;
 enum class MapFault { none, believes_all, not_grown, broken_chain, only_once, silent };
 
 map_server::LiveMap empty_map() {
-  return *map_server::LiveMap::unknown_space({Vec3(0, 0, 0), Vec3(6, 6, 3)}, 0.2,
-                                             {.inflation_m = 0.2});
+  return map_server::LiveMap::unknown_space({Vec3(0, 0, 0), Vec3(6, 6, 3)}, 0.2,
+                                            {.inflation_m = 0.2})
+      .value();
 }
 
 /// A map server as somebody else might write it, with one fault.
@@ -87,12 +88,12 @@ class ForeignMap {
       std::memcpy(p, m.data().data() + at, sizeof p);
       points.emplace_back(double(p[0]), double(p[1]), double(p[2]));
     }
-    const auto result = map_.insert_scan(points, vehicle_map_, 30.0);
-    if (!result) return reporter_.fault(result.error());
+    const map_server::Scan scan{.points_map = points, .origins_map = {&vehicle_map_, 1}};
+    if (auto s = map_.insert_scan(scan, result_); !s) return reporter_.fault(s.error());
     changed_ = true;
     if (fault_ == MapFault::not_grown) return publish_whole();
     msg::VoxelGridUpdate update;
-    conversions::fill_msg(result->update, update);
+    conversions::fill_msg(result_.update, update);
     update.header(conversions::make_header(node_.now_ns()));
     if (fault_ == MapFault::broken_chain) update.from_version(update.from_version() + 5);
     (void)updates_.publish(update);
@@ -111,6 +112,7 @@ class ForeignMap {
   runtime::Node& node_;
   MapFault fault_;
   map_server::LiveMap map_;
+  map_server::ScanResult result_;
   stage::StageReporter reporter_;
   runtime::Publisher<msg::VoxelGrid> wholes_;
   runtime::Publisher<msg::VoxelGridUpdate> updates_;

@@ -5,25 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "structuring_element.hpp"
+
 namespace goshawk {
 namespace {
 
 using Word = BitGrid::Word;
-
-// Half extent along x, in voxels, of the structuring element at offset (dy, dz): the largest
-// k <= limit with gap(k)^2 + gap(dy)^2 + gap(dz)^2 < r^2, gap(k) = max(0, |k| - 1), r > 0 in
-// voxels; -1 if none.
-int half_extent(int dy, int dz, double r, int limit) {
-  const auto gap = [](int k) { return double(std::max(0, std::abs(k) - 1)); };
-  const double taken = gap(dy) * gap(dy) + gap(dz) * gap(dz);
-  // A radius of n voxels must not reach n + 1 through rounding (0.6 / 0.2 > 3): the strict
-  // comparison gets a slack far below a hair and far above an ulp. It is relative, and what
-  // touches (taken = 0) is met however small the radius.
-  const double rest = r * r * (1.0 - 1e-9) - taken;
-  if (taken > 0.0 && rest <= 0.0) return -1;
-  const double k = std::max(1.0, std::ceil(std::sqrt(std::max(0.0, rest))));
-  return int(std::min(k, double(limit)));
-}
 
 // out |= in shifted by `shift` voxels towards larger x (smaller if negative), whole row.
 void or_shifted(Word* out, const Word* in, std::size_t words, int shift) {
@@ -55,29 +42,6 @@ void widen_row(std::vector<Word>& row, std::vector<Word>& scratch, int covered, 
     or_shifted(row.data(), scratch.data(), row.size(), -step);
     covered += step;
   }
-}
-
-// A row of the structuring element.
-struct Offset {
-  int dy;
-  int dz;
-  int half_extent;  // [voxels] along x
-};
-
-// The structuring element's rows, narrow ones first, clipped to what can matter in the grid.
-std::vector<Offset> structuring_element(double r, Index3 size) {
-  std::vector<Offset> rows;
-  const int reach_y = half_extent(0, 0, r, size.y - 1);
-  const int reach_z = half_extent(0, 0, r, size.z - 1);
-  for (int dz = -reach_z; dz <= reach_z; ++dz) {
-    for (int dy = -reach_y; dy <= reach_y; ++dy) {
-      const int k = half_extent(dy, dz, r, size.x);
-      if (k >= 0) rows.push_back({dy, dz, k});
-    }
-  }
-  std::stable_sort(rows.begin(), rows.end(),
-                   [](const Offset& a, const Offset& b) { return a.half_extent < b.half_extent; });
-  return rows;
 }
 
 // Does a radius of r voxels join any two voxels of a grid? Then there is nothing to compute, and
@@ -133,7 +97,7 @@ Result<BitGrid> inflate(const BitGrid& occupied, double radius_m, double resolut
       row.back() &= last_mask;
       if (!any(row.data(), words)) continue;
       int covered = 0;
-      for (const Offset& offset : element) {
+      for (const ElementRow& offset : element) {
         const int to_y = y + offset.dy;
         const int to_z = z + offset.dz;
         if (to_y < 0 || to_y >= size.y || to_z < 0 || to_z >= size.z) continue;

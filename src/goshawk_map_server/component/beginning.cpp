@@ -17,17 +17,23 @@ Box box_of(const Config& c) {
 }
 
 Result<Beginning> from(MapSource source, const Config& config) {
-  auto notes = source.notes;
-  auto map = LiveMap::from_source(std::move(source), voxelize_options(config), growth(config),
-                                  std::int64_t{config.max_tree_mb} * 1'000'000);
+  const auto options = live_options(config);
+  if (!options) return options.error();
+  auto map = LiveMap::from_source(source, voxelize_options(config), growth(config), *options);
   if (!map) return map.error();
-  return Beginning{.map = *std::move(map), .notes = std::move(notes)};
+  return Beginning{.map = *std::move(map), .notes = std::move(source.notes)};
 }
 
 /// Without a journal.
 Result<Beginning> begin_plain(const Config& config) {
+  if (config.follow_vehicle && !config.use_box) {
+    return fail(ErrorCode::invalid_parameter,
+                "follow_vehicle needs use_box: the box is the window that moves");
+  }
   if (!config.map_file.empty()) {
-    auto source = load_map(config.map_file, load_options(config));
+    LoadOptions loading = load_options(config);
+    if (config.follow_vehicle) loading.box = {};  // what lies outside is kept beside the window
+    auto source = load_map(config.map_file, loading);
     if (!source) return source.error();
     return from(*std::move(source), config);
   }
@@ -36,8 +42,10 @@ Result<Beginning> begin_plain(const Config& config) {
                 "map_server has neither a map_file nor use_box: name a map, or the box that begins "
                 "as unknown space");
   }
-  auto map = LiveMap::unknown_space(box_of(config), config.resolution_m, growth(config),
-                                    config.max_voxels);
+  const auto options = live_options(config);
+  if (!options) return options.error();
+  auto map =
+      LiveMap::unknown_space(box_of(config), config.resolution_m, growth(config), *options);
   if (!map) return map.error();
   return Beginning{.map = *std::move(map)};
 }

@@ -43,7 +43,7 @@ class MapServerComponent : public Component {
         })),
         beginning_(begin(config_, node)),
         map_(std::move(beginning_.map)),
-        reporter_(node, StageRole::map_server, "octomap"),
+        reporter_(node, StageRole::map_server, "bricks"),
         voxels_(node.advertise<msg::VoxelGrid>("map/voxels", Qos::latched())),
         updates_(
             node.advertise<msg::VoxelGridUpdate>("map/voxels/updates", Qos::reliable_last(50))),
@@ -52,19 +52,21 @@ class MapServerComponent : public Component {
         "cloud_in", Qos::best_effort(2),
         [this](const sensor_msgs::msg::PointCloud2& m, const MessageInfo&) { on_cloud(m); });
     node.subscribe<nav_msgs::msg::Odometry>(
-        "odom", Qos::best_effort(), [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) {
+        "odom", Qos::best_effort(),
+        [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) {
           if (auto state = conversions::from_msg(m)) vehicle_ = *state;
-        });
+        },
+        Writers::one("odom"));
     node.every(kWholeMapPeriod_s, [this] {
       if (changed_) publish_whole();
       tell_of_journal();
     });
     publish_whole();
     malloc_trim(0);  // what loading and publishing took for a moment; glibc may keep it for ever
-    const auto& grid = map_.grid();
+    const GridGeometry geometry = map_.geometry();
     reporter_.ready(fmt::format("serves {} voxels of {:.3g} m, obstacles inflated by {:.3g} m{}",
-                                to_text(grid.geometry.size), grid.geometry.resolution_m,
-                                grid.inflation_m,
+                                to_text(geometry.size), geometry.resolution_m,
+                                map_.growth().inflation_m,
                                 beginning_.bricks == 0
                                     ? ""
                                     : fmt::format("; {} bricks are from its journal",
@@ -90,7 +92,7 @@ class MapServerComponent : public Component {
     m.header(conversions::make_header(node_.now_ns()));
     m.binary(true);
     m.id("OcTree");
-    m.resolution(map_.grid().geometry.resolution_m);
+    m.resolution(map_.geometry().resolution_m);
     m.data().assign(bytes->begin(), bytes->end());
     reporter_.send(octomap_, m);
   }
@@ -99,14 +101,20 @@ class MapServerComponent : public Component {
     auto points = points_in_map(m);
     if (!points) return reporter_.fault(points.error());
     if (points->empty()) return;
-    const Vec3 origin = vehicle_ ? vehicle_->position_map : Vec3::Zero();
-    auto result = map_.insert_scan(*points, origin, config_.max_range_m);
-    if (!result) return reporter_.fault(result.error());
-    GridUpdate& update = result->update;
+    const Vec3 origin = vehicle_->position_map;
+    const Scan scan{.points_map = *points,
+                    .origins_map = {&origin, 1},
+                    .max_range_m = config_.max_range_m,
+                    .body_path_map = {&origin, 1},
+                    .body_radius_m = config_.body_radius_m};
+    if (auto status = map_.insert_scan(scan, result_); !status) {
+      return reporter_.fault(status.error());
+    }
+    GridUpdate& update = result_.update;
     update.from_version += beginning_.versions_before;
     update.to_version += beginning_.versions_before;
     if (beginning_.journal) {
-      beginning_.journal->add(update.to_version, journal_bricks(update, map_.grid().geometry));
+      beginning_.journal->add(update.to_version, journal_bricks(update, map_.geometry()));
     }
     publish_update(update);
     changed_ = true;
@@ -146,6 +154,7 @@ class MapServerComponent : public Component {
   Config config_;
   Beginning beginning_;  // without its map
   LiveMap map_;
+  ScanResult result_;  // its memory is used again
   StageReporter reporter_;
   Publisher<msg::VoxelGrid> voxels_;
   Publisher<msg::VoxelGridUpdate> updates_;

@@ -32,4 +32,15 @@ Growth growth(const Config& config) {
   return {config.unknown, config.radius_m + config.margin_m};
 }
 
+Result<LiveOptions> live_options(const Config& config) {
+  const auto odds = OddsModel::make(config.hits_needed, config.misses_needed);
+  if (!odds) return odds.error();
+  LiveOptions options;
+  options.odds = *odds;
+  options.follows = config.follow_vehicle;
+  options.max_kept_bytes = std::int64_t{config.max_kept_mb} * 1'000'000;
+  options.max_voxels = config.max_voxels;
+  return options;
+}
+
 }  // namespace goshawk::map_server

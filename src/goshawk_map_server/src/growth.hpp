@@ -18,4 +18,7 @@ inline BitGrid::Word finished_word(BitGrid::Word grown, BitGrid::Word known, Unk
 /// make_voxel_grid without the demand that something stays free.
 Result<VoxelGrid> grow(const RawVoxels& raw, const Growth& growth, std::uint64_t version);
 
+/// That no voxel of a map is free.
+Error nothing_free(const Growth& growth);
+
 }  // namespace goshawk::map_server

@@ -1,105 +1,144 @@
 #include "goshawk/map_server/live_map.hpp"
 
-#include <octomap/OcTree.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <new>
 
 #include "growth.hpp"
-#include "regrow.hpp"
-#include "scan.hpp"
+#include "live_window.hpp"
 
 namespace goshawk::map_server {
 namespace {
 
-// Writes into the raw and known bits what the tree changed its mind about, and marks what that may
-// touch.
-void take_changes(const octomap::OcTree& tree, UnknownPolicy policy, VoxelGrid& grid,
-                  DirtyBricks& dirty) {
-  const GridGeometry& geometry = grid.geometry;
-  const Vec3 steps = (geometry.origin_map / geometry.resolution_m).array().round().matrix();
-  for (auto change = tree.changedKeysBegin(); change != tree.changedKeysEnd(); ++change) {
-    const octomap::OcTreeKey& key = change->first;
-    const Index3 voxel{int(key[0]) - 32768 - int(steps.x()), int(key[1]) - 32768 - int(steps.y()),
-                       int(key[2]) - 32768 - int(steps.z())};
-    const octomap::OcTreeNode* node = tree.search(key);
-    if (node == nullptr || !grid.known.contains(voxel)) continue;
-    const bool occupied = tree.isNodeOccupied(node);
-    const bool was_occupied = grid.raw.get(voxel);
-    const bool was_known = grid.known.get(voxel);
-    if (occupied == was_occupied && was_known) continue;
-    const bool grew_before = was_occupied || (!was_known && policy == UnknownPolicy::occupied);
-    grid.raw.set(voxel, occupied);
-    grid.known.set(voxel, true);
-    dirty.mark(voxel, occupied != grew_before);
+constexpr double kFarthest_voxels = double(1 << 29);  // voxels are numbered in 32 bits
+
+Status check_scan(const Scan& scan, const GridGeometry& geometry) {
+  const bool counts = scan.origins_map.size() == 1 ||
+                      (!scan.origins_map.empty() && scan.origins_map.size() == scan.points_map.size());
+  if (!counts || !std::ranges::all_of(scan.origins_map, is_finite) ||
+      !(std::isfinite(scan.max_range_m) && scan.max_range_m > 0.0)) {
+    return fail(ErrorCode::invalid_input,
+                "a scan needs a finite range above zero, and a finite sensor origin for all points "
+                "or one for each");
   }
+  if (!std::ranges::all_of(scan.body_path_map, is_finite) ||
+      !(std::isfinite(scan.body_radius_m) && scan.body_radius_m >= 0.0)) {
+    return fail(ErrorCode::invalid_input,
+                "a scan's body needs finite places and a finite radius of at least zero");
+  }
+  const double reach_m = kFarthest_voxels * geometry.resolution_m - scan.max_range_m;
+  const auto near = [&](const Vec3& p) { return p.cwiseAbs().maxCoeff() <= reach_m; };
+  if (!std::ranges::all_of(scan.origins_map, near) ||
+      !std::ranges::all_of(scan.body_path_map, near)) {
+    return fail(ErrorCode::map_too_large,
+                fmt::format("the sensor at {} m is more than 2^29 voxels of {:g} m from the origin "
+                            "of the map frame: choose an origin near the flight",
+                            to_text(scan.origins_map.front()), geometry.resolution_m));
+  }
+  return success();
 }
 
 }  // namespace
 
-LiveMap::LiveMap(OcTreePtr tree, VoxelGrid grid, const Growth& growth,
-                 std::int64_t max_tree_bytes)
-    : tree_(std::move(tree)),
-      grid_(std::move(grid)),
-      max_tree_bytes_(max_tree_bytes),
-      growth_(growth) {
-  if (tree_ != nullptr) tree_->enableChangeDetection(true);
-}
+struct LiveMap::Parts {
+  LiveWindow window;
+  Growth growth;
+  LiveOptions options;
+  std::uint64_t version = 1;
+};
 
-Result<LiveMap> LiveMap::from_source(MapSource source, const VoxelizeOptions& options,
-                                     const Growth& growth, std::int64_t max_tree_bytes) {
-  auto raw = voxelize(source, options);
+LiveMap::LiveMap(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+LiveMap::LiveMap(LiveMap&&) noexcept = default;
+LiveMap& LiveMap::operator=(LiveMap&&) noexcept = default;
+LiveMap::~LiveMap() = default;
+
+Result<LiveMap> LiveMap::from_source(const MapSource& source, const VoxelizeOptions& options,
+                                     const Growth& growth, const LiveOptions& live) try {
+  VoxelizeOptions what = options;
+  if (live.follows) what.box = {};  // all of it: what lies outside the window is kept
+  const auto raw = voxelize(source, what);
   if (!raw) return raw.error();
-  auto grid = make_voxel_grid(*raw, growth, 1);
-  if (!grid) return grid.error();
-  return LiveMap(std::move(source.tree), *std::move(grid), growth, max_tree_bytes);
+  GridGeometry geometry = raw->geometry;
+  if (live.follows && options.box) {
+    const auto chosen = raster_of(*options.box, geometry.resolution_m, live.max_voxels);
+    if (!chosen) return chosen.error();
+    geometry = *chosen;
+  }
+  auto window = LiveWindow::make(geometry, growth, live);
+  if (!window) return window.error();
+  window->fill(*raw);
+  window->grow();
+  if (!live.follows && !window->map().any_free()) return nothing_free(growth);
+  return LiveMap(std::make_unique<Parts>(Parts{*std::move(window), growth, live}));
+} catch (const std::bad_alloc&) {
+  return fail(ErrorCode::map_too_large, "the map does not fit into memory: give a smaller box");
 }
 
 Result<LiveMap> LiveMap::unknown_space(const Box& box, double resolution_m, const Growth& growth,
-                                       std::int64_t max_voxels) {
-  const auto geometry = raster_of(box, resolution_m, max_voxels);
+                                       const LiveOptions& live) {
+  const auto geometry = raster_of(box, resolution_m, live.max_voxels);
   if (!geometry) return geometry.error();
-  RawVoxels raw{*geometry, BitGrid(geometry->size, true), BitGrid(geometry->size, false)};
-  auto grid = grow(raw, growth, 1);
-  if (!grid) return grid.error();
-  return LiveMap(std::make_shared<octomap::OcTree>(resolution_m), *std::move(grid), growth,
-                 std::numeric_limits<std::int64_t>::max());
+  auto window = LiveWindow::make(*geometry, growth, live);
+  if (!window) return window.error();
+  return LiveMap(std::make_unique<Parts>(Parts{*std::move(window), growth, live}));
 }
 
-Status LiveMap::make_tree() {
-  auto tree = make_octree(grid_.geometry, grid_.raw, grid_.known, max_tree_bytes_);
-  if (!tree) return tree.error();
-  tree_ = *std::move(tree);
-  tree_->enableChangeDetection(true);
-  return success();
+GridGeometry LiveMap::geometry() const {
+  return parts_->window.geometry();
+}
+const Growth& LiveMap::growth() const {
+  return parts_->growth;
+}
+std::uint64_t LiveMap::version() const {
+  return parts_->version;
+}
+
+VoxelGrid LiveMap::grid() const {
+  const BrickMap& map = parts_->window.map();
+  VoxelGrid grid{.geometry = geometry(),
+                 .grown = BitGrid(map.size(), true, map.default_grown()),
+                 .known = BitGrid(map.size(), false),
+                 .raw = BitGrid(map.size(), true),
+                 .version = parts_->version,
+                 .inflation_m = parts_->growth.inflation_m,
+                 .unknown_is_occupied = map.growth().unknown_is_occupied,
+                 .unknown_grows = map.growth().unknown_grows};
+  map.write_dense(grid.grown, grid.known, grid.raw);
+  return grid;
 }
 
 Result<std::string> LiveMap::octomap_payload() const {
-  if (tree_ != nullptr) return binary_payload(*tree_);
-  return binary_payload(grid_.geometry, grid_.raw, grid_.known);
+  const VoxelGrid all = grid();
+  return binary_payload(all.geometry, all.raw, all.known);
 }
 
-Result<LiveMap::ScanResult> LiveMap::insert_scan(std::span<const Vec3> points_map,
-                                                 const Vec3& sensor_origin_map,
-                                                 double max_range_m) {
-  if (tree_ == nullptr) {
-    if (auto status = make_tree(); !status) return status.error();
+Status LiveMap::insert_scan(const Scan& scan, ScanResult& result) {
+  LiveWindow& window = parts_->window;
+  if (auto status = check_scan(scan, window.geometry()); !status) return status;
+  GridUpdate& update = result.update;
+  update.shift = {};
+  if (parts_->options.follows) {
+    update.shift = window.follow(scan.body_path_map.empty() ? scan.origins_map.front()
+                                                            : scan.body_path_map.back());
   }
-  tree_->resetChangeDetection();
-  const auto inserted = map_server::insert_scan(*tree_, points_map, sensor_origin_map, max_range_m);
-  if (!inserted) return inserted.error();
+  window.insert(scan, result);
+  window.clear_body(scan.body_path_map, scan.body_radius_m);
+  window.list_changes(update.bricks);
+  update.from_version = parts_->version;
+  update.to_version = ++parts_->version;
+  return success();
+}
 
-  DirtyBricks dirty(grid_.geometry.size, reach_of(growth_, grid_.geometry));
-  const VoxelGrid before = grid_;
-  take_changes(*tree_, growth_.unknown, grid_, dirty);
-
-  ScanResult result;
-  result.points_left_out = inserted->left_out;
-  result.update.from_version = grid_.version;
-  result.update.to_version = grid_.version + 1;
-  for (const Index3 index : dirty.bricks()) {
-    Brick brick = regrow(grid_, growth_, index);
-    if (!(brick == brick_of(before, index))) result.update.bricks.push_back(std::move(brick));
-  }
-  if (auto status = apply(grid_, result.update); !status) return status.error();
-  return result;
+std::int64_t LiveMap::memory_bytes() const {
+  return parts_->window.memory_bytes();
+}
+std::int64_t LiveMap::bricks_kept() const {
+  return std::int64_t(parts_->window.archive().bricks());
+}
+std::int64_t LiveMap::bricks_forgotten() const {
+  return parts_->window.archive().forgotten();
 }
 
 }  // namespace goshawk::map_server

@@ -52,12 +52,6 @@ Error knows_nothing() {
   return fail(ErrorCode::map_empty, "the map knows of no voxel");
 }
 
-// What glibc's malloc takes: a node, and for an inner one the array of its children.
-std::int64_t tree_bytes(const std::string& payload) {
-  const auto inner = std::int64_t(payload.size() / 2);
-  return 32 * std::int64_t(count_nodes(payload)) + 80 * inner;
-}
-
 Status check_voxels(Index3 n, std::int64_t max_voxels) {
   const double limit = double(max_voxels);
   if (double(n.x) * n.y * n.z > limit) {
@@ -141,16 +135,10 @@ Result<GridGeometry> raster_of(const Box& box, double resolution_m, std::int64_t
 }
 
 Result<OcTreePtr> make_octree(const GridGeometry& geometry, const BitGrid& occupied,
-                              const BitGrid& known, std::int64_t max_bytes) {
+                              const BitGrid& known) {
   const auto payload = encode(geometry, occupied, known);
   if (!payload) return payload.error();
   if (payload->empty()) return knows_nothing();
-  if (tree_bytes(*payload) > max_bytes) {
-    return too_large(fmt::format("an OctoMap of {} voxels would take {} MB of memory, more than the "
-                                 "limit of {} MB: give a smaller box or a coarser resolution",
-                                 to_text(geometry.size), tree_bytes(*payload) / 1'000'000,
-                                 max_bytes / 1'000'000));
-  }
   auto tree = std::make_shared<octomap::OcTree>(geometry.resolution_m);
   MemoryStream stream(*payload);
   tree->readBinaryData(stream);

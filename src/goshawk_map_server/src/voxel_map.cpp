@@ -146,15 +146,19 @@ Result<VoxelGrid> grow(const RawVoxels& raw, const Growth& growth, std::uint64_t
                    .unknown_grows = growth.unknown == UnknownPolicy::occupied};
 }
 
+Error nothing_free(const Growth& growth) {
+  return fail(ErrorCode::map_empty,
+              fmt::format("no voxel of the map is free after obstacles were inflated by {:.3g} m "
+                          "with unknown space {}: use a smaller radius or margin, or treat "
+                          "unknown space as free",
+                          growth.inflation_m, to_word(growth.unknown)));
+}
+
 Result<VoxelGrid> make_voxel_grid(const RawVoxels& raw, const Growth& growth,
                                   std::uint64_t version) try {
   auto grid = grow(raw, growth, version);
   if (grid && grid->grown.count() == grid->grown.voxels()) {
-    return fail(ErrorCode::map_empty,
-                fmt::format("no voxel of the map is free after obstacles were inflated by {:.3g} m "
-                            "with unknown space {}: use a smaller radius or margin, or treat "
-                            "unknown space as free",
-                            growth.inflation_m, to_word(growth.unknown)));
+    return nothing_free(growth);
   }
   return grid;
 } catch (const std::bad_alloc&) {

@@ -7,6 +7,7 @@
 
 #include "goshawk/map_server/live_map.hpp"
 #include "journal_format.hpp"
+#include "scan_support.hpp"
 #include "support.hpp"
 
 namespace goshawk::map_server {
@@ -149,8 +150,10 @@ TEST_F(Journal, IsWrittenAnewWhenMostOfItIsObsolete) {
   std::uint64_t version = 0;
   while (version < 40'000) {  // 120 MB, if nothing were given up
     std::vector<JournalBrick> batch = truth.batches[version % 3];
-    for (JournalBrick& brick : batch) newest[brick.corner] = brick, brick.raw[0] = version;
-    for (const JournalBrick& brick : batch) newest[brick.corner] = brick;
+    for (JournalBrick& brick : batch) {
+      brick.raw[0] = version;
+      newest[brick.corner] = brick;
+    }
     ASSERT_TRUE(journal.append(++version, batch));
     if (version % 500 == 0) largest = std::max(largest, std::filesystem::file_size(path_));
   }
@@ -175,7 +178,7 @@ TEST_F(Journal, OfALiveMapGivesTheMapBack) {
   const Box box{Vec3(-7.4, -2.0, -1.0), Vec3(8.0, 2.2, 1.4)};
   LiveMap map = LiveMap::unknown_space(box, 0.2, growth).value();
   MapJournal journal = MapJournal::create(path_, kIdentity).value();
-  RawVoxels voxels{map.grid().geometry, map.grid().raw, map.grid().known};
+  RawVoxels voxels{map.geometry(), map.grid().raw, map.grid().known};
   for (int scan = 0; scan < 20; ++scan) {
     const Vec3 from(random_.uniform(-3, 3), random_.uniform(-1, 1), 0.1);
     std::vector<Vec3> points;
@@ -183,10 +186,10 @@ TEST_F(Journal, OfALiveMapGivesTheMapBack) {
       points.push_back(from + 4.0 * Vec3(random_.uniform(-1, 1), random_.uniform(-1, 1),
                                          random_.uniform(-0.3, 0.3)));
     }
-    const auto result = map.insert_scan(points, from, 4.0);
+    const auto result = testing::insert(map, points, from, 4.0);
     ASSERT_TRUE(result);
     ASSERT_TRUE(journal.append(result->update.to_version,
-                               journal_bricks(result->update, map.grid().geometry)));
+                               journal_bricks(result->update, map.geometry())));
   }
   MapJournal::open(path_, kIdentity).value().content().write_into(voxels);
   EXPECT_EQ(voxels.occupied, map.grid().raw);

@@ -6,6 +6,7 @@
 
 #include "goshawk/core/parameter.hpp"
 #include "goshawk/core/result.hpp"
+#include "goshawk/map_server/live_map.hpp"
 #include "goshawk/map_server/map_file.hpp"
 #include "goshawk/map_server/voxel_map.hpp"
 
@@ -33,7 +34,11 @@ struct Config {
   double box_y_max_m = 10.0;
   double box_z_max_m = 4.0;
   int max_voxels = 1'000'000'000;
-  int max_tree_mb = 4000;
+  bool follow_vehicle = false;
+  int max_kept_mb = 1000;
+  int hits_needed = 2;
+  int misses_needed = 4;
+  double body_radius_m = 0.2;
   bool publish_raw = false;
   std::string journal_file = "";
 };
@@ -82,9 +87,24 @@ void describe(Self& c, Visitor&& visit) {
   visit("box_y_max_m", c.box_y_max_m, "m", "upper corner of the box", Anything{});
   visit("box_z_max_m", c.box_z_max_m, "m", "upper corner of the box", Anything{});
   visit("max_voxels", c.max_voxels, "", "larger maps are refused", Range{1.0, 2147483647.0});
-  visit("max_tree_mb", c.max_tree_mb, "MB",
-        "scans are refused if the OctoMap of the map that was read would take more memory",
-        Range{1.0, 2147483647.0});
+  visit("follow_vehicle", c.follow_vehicle, "",
+        "the box moves with the vehicle in steps of 64 x 8 x 8 voxels; what leaves it is kept and "
+        "comes back with it",
+        Anything{});
+  visit("max_kept_mb", c.max_kept_mb, "MB",
+        "memory for what left the box; beyond it, what left first is forgotten",
+        Range{1.0, 1e6});
+  visit("hits_needed", c.hits_needed, "",
+        "scans that must hit a voxel seen free for long before it is an obstacle; a voxel that was "
+        "unknown is one at the first hit",
+        Range{1.0, 4.0});
+  visit("misses_needed", c.misses_needed, "",
+        "scans that must see through an obstacle before it is free: 4 at 10 Hz take 0.4 s",
+        Range{1.0, 9.0});
+  visit("body_radius_m", c.body_radius_m, "m",
+        "points of a scan nearer than this to the vehicle's centre are the vehicle itself, and the "
+        "space it flew through is free; 0: neither",
+        Range{0.0, 100.0});
   visit(
       "publish_raw", c.publish_raw, "",
       "map/voxels also brings the obstacles as measured: a corridor_builder with margin sphere "
@@ -100,5 +120,6 @@ void describe(Self& c, Visitor&& visit) {
 LoadOptions load_options(const Config& config);
 VoxelizeOptions voxelize_options(const Config& config);
 Growth growth(const Config& config);
+Result<LiveOptions> live_options(const Config& config);
 
 }  // namespace goshawk::map_server

@@ -1,61 +1,89 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
+#include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
-#include "goshawk/core/grid_update.hpp"
+#include "goshawk/core/brick_map.hpp"
 #include "goshawk/map_server/map_file.hpp"
+#include "goshawk/map_server/odds_model.hpp"
 #include "goshawk/map_server/voxel_map.hpp"
 
 namespace goshawk::map_server {
 
-/// The tree, its bits and the grown grid, kept in step while scans come in. The grid's box never
-/// changes: what a scan tells of the space outside stays in the tree alone.
+struct LiveOptions {
+  OddsModel odds = {};
+  /// A ray that grazes a surface just before it ends in it does not count against the surface.
+  bool keep_grazed = true;
+  /// The window moves with the vehicle; its size is rounded up to whole bricks. What leaves it is
+  /// kept, and comes back with it.
+  bool follows = false;
+  std::int64_t max_kept_bytes = 1'000'000'000;  // of what left; then the oldest is forgotten
+  std::int64_t max_voxels = 1'000'000'000;      // of the window
+};
+
+/// One scan, frame map [m].
+struct Scan {
+  std::span<const Vec3> points_map;
+  std::span<const Vec3> origins_map;  // where the sensor was: one for all points, or one a point
+  double max_range_m = 30.0;          // longer rays clear space up to there and hit nothing
+  /// Where the body has been since the last scan, the present place last. May be empty.
+  std::span<const Vec3> body_path_map = {};
+  /// Points nearer than this to the present place are the vehicle itself and count for nothing;
+  /// voxels with their centre nearer than this to a place of the path are free. 0: neither.
+  double body_radius_m = 0.0;
+};
+
+struct ScanResult {
+  GridUpdate update;                 // brings the grid of before to that of now; may be empty
+  std::int64_t points_left_out = 0;  // not finite, or at the sensor itself: missing returns
+  std::int64_t points_on_body = 0;
+};
+
+/// A window of the world that scans keep up to date (BrickMap), with the confidence of each voxel.
 class LiveMap {
  public:
-  /// @param max_tree_bytes of the tree that the first scan makes of a map without one
-  /// @return as voxelize() and make_voxel_grid(); the grid has version 1
-  static Result<LiveMap> from_source(
-      MapSource source, const VoxelizeOptions& options, const Growth& growth,
-      std::int64_t max_tree_bytes = std::numeric_limits<std::int64_t>::max());
+  /// @return as voxelize() and make_voxel_grid(); the grid has version 1. A map that follows takes
+  /// options.box as its first window, and keeps the rest of the source
+  static Result<LiveMap> from_source(const MapSource& source, const VoxelizeOptions& voxelize,
+                                     const Growth& growth, const LiveOptions& options = {});
 
-  /// A map that knows nothing yet. @param box [m] what the grid covers
+  /// A map that knows nothing yet. @param box [m] what the window covers at first
   /// @return invalid_parameter, map_too_large
   static Result<LiveMap> unknown_space(const Box& box, double resolution_m, const Growth& growth,
-                                       std::int64_t max_voxels = 1'000'000'000);
+                                       const LiveOptions& options = {});
 
-  /// With raw voxels. A copy shares its bits and stays as it is while scans come in.
-  const VoxelGrid& grid() const { return grid_; }
-  const Growth& growth() const { return growth_; }
+  LiveMap(LiveMap&&) noexcept;
+  LiveMap& operator=(LiveMap&&) noexcept;
+  ~LiveMap();
 
-  /// Null until a scan needs one, if the map was not read from one.
-  const OcTreePtr& tree() const { return tree_; }
-  /// What octomap_msgs/Octomap carries of the map (binary).
+  GridGeometry geometry() const;
+  const Growth& growth() const;
+  std::uint64_t version() const;
+  /// The window as a dense grid with raw voxels; its bits are its own.
+  VoxelGrid grid() const;
+  /// What octomap_msgs/Octomap carries of the window (binary); empty if nothing is known.
+  /// @return map_too_large beyond OctoMap's reach
   Result<std::string> octomap_payload() const;
 
-  struct ScanResult {
-    GridUpdate update;  // brings grid() of before to grid() of now; may be empty
-    std::int64_t points_left_out = 0;  // not finite, or at the sensor itself: missing returns
-  };
+  /// Moves the window if it follows, inserts a scan, and grows anew around what changed. The
+  /// version rises by one, even if no brick changed. Allocates nothing once the bricks are known
+  /// and `result` is used again.
+  /// @return invalid_input, map_too_large; then nothing was inserted
+  Status insert_scan(const Scan& scan, ScanResult& result);
 
-  /// Inserts a scan and grows anew around what changed. The version rises by one, even if no
-  /// brick changed.
-  /// @param points_map, sensor_origin_map [m] frame map @param max_range_m [m] longer rays clear
-  /// space up to there and hit nothing
-  /// @return invalid_input, map_too_large (also if the tree would be); then nothing was inserted
-  Result<ScanResult> insert_scan(std::span<const Vec3> points_map, const Vec3& sensor_origin_map,
-                                 double max_range_m);
+  std::int64_t memory_bytes() const;
+  /// Bricks that left the window and are kept, and those that were forgotten for want of memory.
+  std::int64_t bricks_kept() const;
+  std::int64_t bricks_forgotten() const;
 
  private:
-  LiveMap(OcTreePtr tree, VoxelGrid grid, const Growth& growth, std::int64_t max_tree_bytes);
-  Status make_tree();
+  struct Parts;
+  explicit LiveMap(std::unique_ptr<Parts> parts);
 
-  OcTreePtr tree_;
-  VoxelGrid grid_;
-  std::int64_t max_tree_bytes_;
-  Growth growth_;
+  std::unique_ptr<Parts> parts_;
 };
 
 }  // namespace goshawk::map_server

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -38,13 +37,10 @@ Result<GridGeometry> raster_of(const Box& box, double resolution_m, std::int64_t
 /// Builds the tree whose leaves say exactly what the bits say; uniform regions become one leaf.
 /// @param occupied, known of geometry.size; where known is not set, occupied is ignored; an
 /// empty `known` means that all voxels are known
-/// @param max_bytes of memory for the tree: 30 to 70 bytes a voxel where neighbours differ, and in
-/// flat maps, whose voxels fill no cube
 /// @return invalid_parameter if the origin is not a multiple of the resolution, map_empty if
-/// nothing is known, map_too_large outside OctoMap's reach or beyond max_bytes
+/// nothing is known, map_too_large outside OctoMap's reach
 Result<OcTreePtr> make_octree(const GridGeometry& geometry, const BitGrid& occupied,
-                              const BitGrid& known,
-                              std::int64_t max_bytes = std::numeric_limits<std::int64_t>::max());
+                              const BitGrid& known);
 
 /// Writes .bt (occupancy only) or .ot (log-odds as well), by the ending; a file that was there
 /// before is replaced only when all went well. @return io_failed, or map_unreadable for another

@@ -1,0 +1,196 @@
+#include "ray_scan.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+#include <tuple>
+
+#include "goshawk/core/random.hpp"
+#include "scan_support.hpp"
+
+namespace goshawk::map_server {
+namespace {
+
+using Voxel = std::tuple<int, int, int>;
+using Voxels = std::set<Voxel>;
+
+struct Seen {
+  Voxels missed, hit;
+};
+
+Seen seen_of(const RayScan& scan) {
+  Seen seen;
+  scan.for_lines([&](Index3 brick, int first_row, const RayScan::Word* missed,
+                     const RayScan::Word* hit) {
+    for (int k = 0; k < RayScan::kLine; ++k) {
+      const int row = first_row + k;
+      for (int x = 0; x < 64; ++x) {
+        const Voxel voxel{64 * brick.x + x, 8 * brick.y + row % 8, 8 * brick.z + row / 8};
+        const bool twice = ((missed[k] >> x & 1U) != 0 && !seen.missed.insert(voxel).second) ||
+                           ((hit[k] >> x & 1U) != 0 && !seen.hit.insert(voxel).second);
+        EXPECT_FALSE(twice);
+      }
+    }
+  });
+  return seen;
+}
+
+Voxel voxel_at(const Vec3& p) {
+  return {int(std::floor(p.x())), int(std::floor(p.y())), int(std::floor(p.z()))};
+}
+
+// Every voxel of the box against the ray, cube by cube: the truth, but where a ray only touches.
+void expect_ray(const Seen& seen, const Vec3& from, const Vec3& to, bool hits, Index3 lower,
+                Index3 upper) {
+  const Voxel end = voxel_at(to);
+  const double length = (to - from).norm();
+  for (int z = lower.z; z < upper.z; ++z) {
+    for (int y = lower.y; y < upper.y; ++y) {
+      for (int x = lower.x; x < upper.x; ++x) {
+        const Voxel voxel{x, y, z};
+        const bool missed = seen.missed.contains(voxel);
+        EXPECT_EQ(seen.hit.contains(voxel), hits && voxel == end);
+        if (voxel == end) {
+          EXPECT_FALSE(missed);
+          continue;
+        }
+        const Vec3 corner(x, y, z);
+        if (testing::share_inside(from, to, corner, -1e-9) * length > 1e-8) {
+          EXPECT_TRUE(missed) << x << ' ' << y << ' ' << z;
+        } else if (testing::share_inside(from, to, corner, 1e-8) < 0.0) {
+          EXPECT_FALSE(missed) << x << ' ' << y << ' ' << z;
+        }
+      }
+    }
+  }
+}
+
+Vec3 place(Random& random, double low, double high, bool on_raster) {
+  Vec3 p(random.uniform(low, high), random.uniform(low, high), random.uniform(low, high));
+  if (on_raster) p = (2.0 * p).array().round().matrix() / 2.0;
+  return p;
+}
+
+TEST(RayScan, MeetsTheVoxelsThatABruteForceCasterMeets) {
+  Random random(3);
+  const Index3 lower_brick{1, 1, 0}, counts{2, 2, 2};
+  const Index3 lower{64, 8, 0}, upper{192, 24, 16};
+  RayScan scan;
+  for (int round = 0; round < 400; ++round) {
+    // Inside, from outside, through, past; on the raster of faces and edges too.
+    const bool on_raster = round % 4 == 0;
+    const double spread = round % 3 == 0 ? 40.0 : 7.9;
+    const Vec3 middle(128.0, 16.0, 8.0);
+    const Vec3 from = middle + place(random, -spread, spread, on_raster);
+    Vec3 to = middle + place(random, -spread, spread, on_raster);
+    if (round % 5 == 0) to[round / 5 % 3] = from[round / 5 % 3];
+    if (round % 7 == 0) to.x() = from.x() + random.uniform(-60.0, 60.0);
+    const bool hits = random.chance(0.5);
+    scan.begin(lower_brick, counts);
+    scan.cast(from, to, hits, nullptr);
+    expect_ray(seen_of(scan), from, to, hits, lower, upper);
+  }
+}
+
+TEST(RayScan, AScanIsTheUnionOfItsRaysAndBeginForgetsTheOneBefore) {
+  Random random(4);
+  RayScan all, single;
+  for (int round = 0; round < 5; ++round) {
+    const Index3 counts{1 + random.below(3), 1 + random.below(3), 1 + random.below(3)};
+    all.begin({}, counts);
+    Seen expected;
+    for (int ray = 0; ray < 60; ++ray) {
+      const Vec3 from = place(random, -4.0, 30.0, false), to = place(random, -4.0, 30.0, false);
+      all.cast(from, to, ray % 2 == 0, nullptr);
+      single.begin({}, counts);
+      single.cast(from, to, ray % 2 == 0, nullptr);
+      expected.missed.merge(seen_of(single).missed);
+      expected.hit.merge(seen_of(single).hit);
+    }
+    const Seen seen = seen_of(all);
+    EXPECT_EQ(seen.missed, expected.missed);
+    EXPECT_EQ(seen.hit, expected.hit);
+  }
+}
+
+TEST(RayScan, RaysThatAreAlmostStraightOrFarAwayStayInsideTheBox) {
+  RayScan scan;
+  scan.begin({}, {1, 1, 1});
+  for (const double tiny : {0.0, 1e-300, 1e-12, 1e-7, -1e-7, -1e-12}) {
+    for (const double far : {5.0, 1e3, 1e6, 5e8}) {
+      scan.cast(Vec3(2.0, 3.0, 4.0), Vec3(2.0 + far, 3.0 + tiny, 4.0 - tiny), true, nullptr);
+      scan.cast(Vec3(2.0 - far, 3.0, 4.0), Vec3(2.5, 3.0 + tiny, 4.0 + tiny), false, nullptr);
+    }
+  }
+  for (const Voxel& voxel : seen_of(scan).missed) {
+    EXPECT_GE(std::get<1>(voxel), 2);
+    EXPECT_LE(std::get<1>(voxel), 3);
+    EXPECT_GE(std::get<2>(voxel), 3);
+    EXPECT_LE(std::get<2>(voxel), 4);
+  }
+  EXPECT_TRUE(seen_of(scan).missed.contains({63, 3, 4}));
+}
+
+// A floor of one layer, known as such, and a sensor just above it.
+BrickMap floor_map() {
+  BrickMap map = BrickMap::make({64, 24, 16}, {}).value();
+  for (int y = 0; y < 3; ++y) {
+    for (int row = 0; row < 8; ++row) map.write({0, y, 0}, row + 16, ~std::uint64_t{0}, ~std::uint64_t{0});
+  }
+  return map;
+}
+
+TEST(RayScan, AGrazedFloorIsNotPassedThrough) {
+  const BrickMap map = floor_map();  // z = 2
+  RayScan scan;
+  const Vec3 from(2.5, 12.5, 5.0), to(50.5, 12.7, 2.5);
+  scan.begin({}, map.counts());
+  scan.cast(from, to, true, nullptr);
+  const Seen eaten = seen_of(scan);
+  EXPECT_TRUE(eaten.missed.contains({45, 12, 2}));
+  scan.begin({}, map.counts());
+  scan.cast(from, to, true, &map);
+  const Seen kept = seen_of(scan);
+  for (const Voxel& voxel : kept.missed) EXPECT_NE(std::get<2>(voxel), 2);
+  for (const Voxel& voxel : eaten.missed) {
+    EXPECT_TRUE(std::get<2>(voxel) == 2 || kept.missed.contains(voxel));
+  }
+  EXPECT_EQ(kept.hit, eaten.hit);
+}
+
+TEST(RayScan, AFloorThatARayDoesNotEndInIsPassedThrough) {
+  const BrickMap map = floor_map();
+  RayScan scan;
+  scan.begin({}, map.counts());
+  scan.cast(Vec3(2.5, 12.5, 5.0), Vec3(30.5, 12.5, 0.5), true, &map);  // through it
+  const Seen seen = seen_of(scan);
+  EXPECT_TRUE(seen.missed.contains({20, 12, 2}) || seen.missed.contains({19, 12, 2}));
+}
+
+TEST(RayScan, AThingInFrontOfAWallIsPassedThroughWhenItHasLeft) {
+  // A wall at x = 40, and the ghost of a pole that stood before it.
+  BrickMap map = BrickMap::make({64, 24, 16}, {}).value();
+  for (int z = 0; z < 16; ++z) {
+    for (int y = 0; y < 24; ++y) {
+      const bool pole = y >= 11 && y <= 13;
+      const std::uint64_t wall = std::uint64_t{1} << 40;
+      const std::uint64_t ghost = pole ? std::uint64_t{7} << 37 : 0;
+      map.write({0, y / 8, z / 8}, 8 * (z % 8) + y % 8, wall | ghost, ~std::uint64_t{0});
+    }
+  }
+  RayScan scan;
+  scan.begin({}, map.counts());
+  for (double y = 8.05; y < 17.0; y += 0.1) {
+    for (double z = 4.05; z < 12.0; z += 0.1) {
+      scan.cast(Vec3(2.5, 12.5, 8.5), Vec3(40.5, y, z), true, &map);
+    }
+  }
+  const Seen seen = seen_of(scan);
+  for (int y = 11; y <= 13; ++y) {
+    for (int x = 37; x < 40; ++x) EXPECT_TRUE(seen.missed.contains({x, y, 8})) << x << ' ' << y;
+  }
+}
+
+}  // namespace
+}  // namespace goshawk::map_server
