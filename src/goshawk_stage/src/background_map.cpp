@@ -6,12 +6,11 @@ namespace goshawk::stage {
 
 BackgroundMap::BackgroundMap(runtime::Node& node)
     : beside_(node.in_lock_step() ? nullptr : node.beside()) {
+  if (beside_) beside_->on_second_writer([this](const Error& fault) { hand_over(fault); });
   subscription_.emplace(
       beside_ ? *beside_ : node, [this](const auto& grid) { hand_over(grid); },
       [this](const Error& fault) { hand_over(fault); });
-  if (!beside_) return;
-  beside_->on_second_writer([this](const Error& fault) { hand_over(fault); });
-  thread_ = std::thread([this] { beside_->spin(); });
+  if (beside_) thread_ = std::thread([this] { beside_->spin(); });
 }
 
 BackgroundMap::~BackgroundMap() {

@@ -113,7 +113,9 @@ class TrackerComponent : public Component {
     if (config_.second_opinion != SecondOpinion::off) {
       node.subscribe<msg::StageReport>(
           "stage_report", Qos::reliable_last(50),
-          [this](const msg::StageReport& m, const MessageInfo&) { on_report(m); });
+          [this](const msg::StageReport& m, const MessageInfo&) { on_report(m); },
+          Writers::one_each<msg::StageReport>(
+              "stage_report", [](const msg::StageReport& m) { return m.stage(); }));
     }
     node.every(0.05, [this] { watch(); });
     reporter_.ready("tracks with " + config_.controller);
