@@ -39,6 +39,12 @@ std::uint8_t to_msg(Mode mode) {
   return std::uint8_t(mode);
 }
 
+// Only whose verdicts count must be one process.
+std::uint8_t judging_stage(const msg::StageReport& m) {
+  const bool judges = conversions::stage_role_of(m.stage()) == StageRole::flight_check;
+  return judges ? m.stage() : std::uint8_t{0};
+}
+
 /// What a flight's control steps cost, and how evenly they came.
 class StepStatistics {
  public:
@@ -114,8 +120,7 @@ class TrackerComponent : public Component {
       node.subscribe<msg::StageReport>(
           "stage_report", Qos::reliable_last(50),
           [this](const msg::StageReport& m, const MessageInfo&) { on_report(m); },
-          Writers::one_each<msg::StageReport>(
-              "stage_report", [](const msg::StageReport& m) { return m.stage(); }));
+          Writers::one_each<msg::StageReport>("stage_report", &judging_stage));
     }
     node.every(0.05, [this] { watch(); });
     reporter_.ready("tracks with " + config_.controller);
