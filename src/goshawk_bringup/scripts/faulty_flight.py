@@ -51,9 +51,9 @@ class Events:
 class FaultyFlight:
     """What a fault acts on: the stages' processes, their shims, the map that they load."""
 
-    def __init__(self, prefix, folder, true_world, free_world, env, seed):
+    def __init__(self, prefix, folder, true_world, size_m, env, seed):
         self.prefix, self.folder = pathlib.Path(prefix), pathlib.Path(folder)
-        self.true_world, self.free_world = true_world, free_world
+        self.true_world, self.size_m = true_world, size_m
         self.world = self.folder / "loaded.bt"
         self.world.write_bytes(pathlib.Path(true_world).read_bytes())
         self.env, self.domain = env, None

@@ -215,9 +215,19 @@ class Tracks(Folder):
         self.assertEqual(track.stamp_at(track.times[2]), 3.01)
         self.assertEqual(Track(path).times, [0.0, 0.01, 3.01, 3.02])
 
-    def test_a_vehicle_that_flew_meanwhile_was_not_seen(self):
+    def test_what_a_vehicle_flew_unseen_after_a_stop_parts_its_track(self):
+        path = self.table([(0.0, 0.0, 1.0), (0.01, 0.01, 1.0), (3.01, 2.0, 1.0), (3.02, 2.01, 1.0)])
+        track = Track(path, stalls=1)
+        self.assertEqual(track.parts(), [range(0, 2), range(2, 4)])
+        track.write(self.folder / "part.csv", track.parts()[1])
+        part = Track(self.folder / "part.csv")
+        self.assertEqual((part.points[0], len(part.rows)), ((2.0, 0.0, 0.0), 2))
+        self.assertAlmostEqual(part.times[0], 0.0)
+
+    def test_a_gap_that_no_stop_explains_stays(self):
         path = self.table([(0.0, 0.0, 1.0), (0.01, 0.01, 1.0), (3.01, 2.0, 1.0)])
-        self.assertEqual(Track(path, stalls=1).times, [0.0, 0.01, 3.01])
+        track = Track(path)
+        self.assertEqual((track.times, track.parts()), ([0.0, 0.01, 3.01], [range(0, 3)]))
 
     def test_the_fastest_moment(self):
         path = self.table([(0.0, 0.0, 1.0), (0.01, 0.01, -3.0), (0.02, 0.0, 0.0)])
