@@ -24,6 +24,9 @@ STAGES = {
                 "writes": ["odom", "odom_true", "vehicle_status", "/tf"]},
     "flight_check": {"reads": ["octomap_binary", "committed_trajectory", "odom", "odom_true",
                                "vehicle_status"], "writes": []},
+    "sensors": {"reads": ["odom", "odom_true"],
+                "writes": ["points", "cloud_in", "depth/image_rect_raw", "depth/camera_info",
+                           "/tf_static"]},
     "visualizer": {"reads": ["octomap_binary", "path", "committed_trajectory", "odom"],
                    "writes": ["view/obstacles", "view/plan", "view/flown", "path_line", "markers"]},
 }
