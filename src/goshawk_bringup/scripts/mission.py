@@ -136,7 +136,7 @@ class FaultyMission:
 
     def __init__(self, flyer, mission, folder, world):
         self.flyer, self.mission, self.folder, self.world = flyer, mission, folder, world
-        self.rows = []
+        self.rows, self.fault = [], None
 
     def fly(self, words):
         options = self.flyer.options
@@ -149,11 +149,16 @@ class FaultyMission:
             flight, faults.drawn(options.faults, self.mission.fault_seed))
 
         def beside(process):
-            self.rows = injector.run(lambda: process.poll() is not None)
+            try:
+                self.rows = injector.run(lambda: process.poll() is not None)
+            except OSError as error:
+                self.fault = error
 
         status, result = self.flyer.call(
             *words, *self.truth(), "--keep-going", "-p", f"map_server:map_file:={flight.world}",
             env=flight.flight_env, beside=beside)
+        if self.fault:
+            raise self.fault
         fault_report.assess(injector.events.read(), self.rows)
         injector.events.close()
         row = {**self.mission.conditions(), **outcome(status, result, self.folder)}

@@ -228,7 +228,7 @@ class NavigatorComponent : public Component {
   // Before anything is published: the navigator after this one then knows what others may have.
   void remember(const std::vector<Order>& orders) {
     if (orders.empty()) return;
-    StoredMemory stored{.memory = navigator_.memory()};
+    StoredMemory stored{.memory = navigator_.memory(), .legs = {}};
     for (const Leg& leg : stored.memory.legs) {
       const auto at = std::ranges::find(published_, leg.id(), &id_of);
       if (at != published_.end()) stored.legs.push_back(*at);

@@ -10,6 +10,12 @@ namespace {
 // So many changed voxels, at most one in this many words of the map, are forgotten one by one.
 constexpr std::int64_t kWordsAChange = 64;
 
+// Of the words that say where jumps stop: they begin 64 bits before the copy, for a window that ends
+// near its beginning.
+std::size_t word_at(std::int64_t position) {
+  return std::size_t((position >> 6) + 1);
+}
+
 // 64 voxels of the nine rows around and with a scanned one, and of the same rows one voxel on.
 struct Rows {
   std::uint64_t own;
@@ -80,8 +86,8 @@ void ObstacleBits::clear(Copy& copy, int u_size, int v_size, int w_size) {
   copy.stride_v = copy.stride_u * (std::int64_t{v_size} + 2);
   const std::int64_t bits = copy.stride_v * (std::int64_t{w_size} + 2) + copy.stride_u + 2;
   copy.words.assign(std::size_t(bits / 64) + 2 * kSpare + 1, ~std::uint64_t{0});
-  copy.ahead.resize(std::size_t(bits / 64) + 3);
-  copy.behind.resize(std::size_t(bits / 64) + 3);
+  copy.ahead.resize(std::size_t(bits / 64) + 4);
+  copy.behind.resize(std::size_t(bits / 64) + 4);
   for (int w = 0; w < w_size; ++w) {
     for (int v = 0; v < v_size; ++v) {
       std::int64_t p = position(copy, 0, v, w);
@@ -142,8 +148,8 @@ void ObstacleBits::forget_around(Copy& copy, std::int64_t p) {
     for (const std::int64_t u : {-copy.stride_u, std::int64_t{0}, copy.stride_u}) {
       const std::int64_t row = p + v + u;
       for (const std::int64_t q : {row - 1, row + 1}) {
-        copy.ahead.forget(std::size_t(q >> 6));
-        copy.behind.forget(std::size_t(q >> 6));
+        copy.ahead.forget(word_at(q));
+        copy.behind.forget(word_at(q));
       }
     }
   }
@@ -157,7 +163,7 @@ void ObstacleBits::forget_derived() {
 }
 
 void ObstacleBits::find_stops(Copy& copy, std::size_t word) {
-  const auto p = std::int64_t(word) * 64;
+  const std::int64_t p = (std::int64_t(word) - 1) * 64;
   const Rows before = rows_at(copy, p - 1), here = rows_at(copy, p), after = rows_at(copy, p + 1);
   copy.ahead.set(word, here.own | forced(rule_, before, here, after));
   copy.behind.set(word, here.own | forced(rule_, after, here, before));
@@ -175,7 +181,7 @@ int ObstacleBits::straight_jump(CornerRule rule, int axis, int sign, Index3 from
   const std::int64_t p = position(copy, u, v, w);
   // The window begins, or ends, at the voxel itself.
   const std::int64_t low = sign > 0 ? p : p - 63;
-  const auto first = std::size_t(low >> 6);
+  const std::size_t first = word_at(low);
   const int shift = int(low & 63);
   const auto stops = [&](const LazyWords& words, std::size_t word) {
     if (!words.is_known(word)) find_stops(copy, word);
