@@ -13,8 +13,8 @@ using PublishedLeg = goshawk_msgs::msg::CommittedTrajectory;
 
 /// What is kept in the file: Memory, with legs as messages, for others read them.
 struct StoredMemory {
-  Memory memory;  // without legs
-  std::vector<PublishedLeg> legs;
+  Memory memory = {};  // without legs
+  std::vector<PublishedLeg> legs = {};
 };
 
 /// The bytes of the file, and back.
