@@ -156,13 +156,10 @@ class NavigatorComponent : public Component {
   }
 
   void on_goal(const geometry_msgs::msg::PoseStamped& m) {
-    Status status = conversions::check_frame(m.header(), conversions::kMapFrame, "a goal");
-    if (status) {
-      const auto& q = m.pose().orientation();
-      status =
-          navigator_.on_goal(conversions::from_msg(m.pose().position()),
-                             yaw_of(Quaternion(q.w(), q.x(), q.y(), q.z())), node_.monotonic_ns());
-    }
+    const auto goal = conversions::from_msg(m);
+    const Status status =
+        goal ? navigator_.on_goal(goal->position_map, goal->yaw_rad, node_.monotonic_ns())
+             : Status(goal.error());
     if (!status) {
       reporter_.fault(status.error());
       // The sender of this goal waits for its answer on navigator_state.

@@ -13,7 +13,6 @@ constexpr std::int64_t kMillisecond = 1'000'000;
 constexpr double kBodyRadius_m = 0.15;
 constexpr double kMargin_m = 0.05;
 constexpr double kMessage_s = 0.001;  // over DDS
-const Vec3 kHome(3, 0, 1);
 
 }  // namespace
 
@@ -47,8 +46,9 @@ bool touches(const VoxelGrid& map, const Vec3& position_map) {
 }
 
 FlightLab::FlightLab(std::shared_ptr<const VoxelGrid> map, std::uint64_t seed,
-                     const Delays& delays, const navigator::Config& config)
-    : map_(std::move(map)),
+                     const Delays& delays, const navigator::Config& config, const Vec3& home_map)
+    : home_map_(home_map),
+      map_(std::move(map)),
       random_(seed),
       delays_(delays),
       search_(path_search::PathSearch::create({}).value()),
@@ -57,10 +57,18 @@ FlightLab::FlightLab(std::shared_ptr<const VoxelGrid> map, std::uint64_t seed,
       vehicle_(simulator::Quadrotor::create({}).value()),
       tracker_(tracker::Tracker::create({}).value()),
       navigator_(config, 1) {
-  search_.set_map(map_);
-  navigator_.on_map(map_, 0);
-  if (!vehicle_.reset(kHome, 0.0)) throw std::logic_error("the vehicle does not start");
+  set_map(map_);
+  if (!vehicle_.reset(home_map_, 0.0)) throw std::logic_error("the vehicle does not start");
   run(0.1);
+}
+
+void FlightLab::set_map(std::shared_ptr<const VoxelGrid> map) {
+  map_ = std::move(map);
+  search_.set_map(map_);
+  tracker_.set_map(map_, now_ns());
+  report_tracker();
+  navigator_.on_map(map_, now_ns());
+  take_orders();
 }
 
 Status FlightLab::goal(const Vec3& goal_map, double yaw_rad) {
@@ -85,7 +93,7 @@ Vec3 FlightLab::random_place() {
     const Index3 i{random_.below(size.x), random_.below(size.y), random_.below(size.z)};
     if (map_->grown.test(i)) continue;
     const Vec3 place = map_->geometry.center(i);
-    if (search_.plan(kHome, place)) return place;
+    if (search_.plan(home_map_, place)) return place;
   }
 }
 
@@ -178,6 +186,7 @@ void FlightLab::obey(const navigator::Commit& commit) {
     const std::int64_t now = vehicle_.time_ns();
     const auto status = tracker_.accept(committed, now);
     if (!status) refusals.push_back(status.error());
+    if (status) flown_ = committed;
     const Error outcome = status ? Error{ErrorCode::ok, ""} : status.error();
     in(kMessage_s, [this, id = committed.id(), outcome] {
       navigator_.on_report(id, StageRole::tracker, outcome, vehicle_.time_ns());

@@ -34,7 +34,10 @@ bool touches(const VoxelGrid& map, const Vec3& position_map);
 class FlightLab {
  public:
   FlightLab(std::shared_ptr<const VoxelGrid> map, std::uint64_t seed, const Delays& delays = {},
-            const navigator::Config& config = {});
+            const navigator::Config& config = {}, const Vec3& home_map = Vec3(3, 0, 1));
+
+  /// From here on all stages have this map.
+  void set_map(std::shared_ptr<const VoxelGrid> map);
 
   Status goal(const Vec3& goal_map) { return goal(goal_map, 0.0); }
   Status goal(const Vec3& goal_map, double yaw_rad);
@@ -47,6 +50,9 @@ class FlightLab {
   /// @return the centre of a voxel of the grown map
   Vec3 blocked_place();
 
+  tracker::Tracker& tracker() { return tracker_; }
+  const std::optional<CommittedTrajectory>& flown() const { return flown_; }  // newest accepted
+  std::int64_t now_ns() const { return vehicle_.time_ns(); }
   const Vec3& position() const { return vehicle_.state().position_map; }
   const Vec3& velocity() const { return vehicle_.state().velocity_map; }
   double speed() const { return velocity().norm(); }
@@ -92,6 +98,7 @@ class FlightLab {
   Planned plan(const PlanRequest& request);
   void report_tracker();
 
+  Vec3 home_map_;
   std::shared_ptr<const VoxelGrid> map_;
   Random random_;
   Delays delays_;
@@ -103,6 +110,7 @@ class FlightLab {
   navigator::Navigator navigator_;
   navigator::StateOrder state_;
   std::deque<Event> events_;
+  std::optional<CommittedTrajectory> flown_;
   std::string reported_;
   std::uint64_t answers_ = 0;
   std::uint64_t newest_request_ = 0;
