@@ -1,7 +1,7 @@
 #pragma once
 
-#include <functional>
 #include <string>
+#include <vector>
 
 #include "goshawk/navigator/navigator.hpp"
 #include "goshawk_msgs.h"
