@@ -52,9 +52,11 @@ class MapServerComponent : public Component {
         "cloud_in", Qos::best_effort(2),
         [this](const sensor_msgs::msg::PointCloud2& m, const MessageInfo&) { on_cloud(m); });
     node.subscribe<nav_msgs::msg::Odometry>(
-        "odom", Qos::best_effort(), [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) {
+        "odom", Qos::best_effort(),
+        [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) {
           if (auto state = conversions::from_msg(m)) vehicle_ = *state;
-        });
+        },
+        Writers::one("odom"));
     node.every(kWholeMapPeriod_s, [this] {
       if (changed_) publish_whole();
       tell_of_journal();

@@ -61,7 +61,7 @@ class States:
 class Stack:
     """Every stage launched in a world of its own, with the topics that tell what happens."""
 
-    def __init__(self, sandbox, file="flight", ros_args=(), env=None,
+    def __init__(self, sandbox, file="flight", ros_args=(), env=None, options=(),
                  world_parameter="map_server:map_file"):
         """@param world_parameter which parameter of which node names the world"""
         self.sandbox = sandbox
@@ -70,7 +70,7 @@ class Stack:
         if made.status != 0:
             raise AssertionError(f"the world could not be made: {made}")
         self.launch = Launch(sandbox, file, "-p", f"{world_parameter}:={self.world}", *ros_args,
-                             env=env)
+                             env=env, options=options)
         self.reports = self.echo("stage_report")
         self.states = States(self.echo("navigator_state"))
         self.odom = self.echo("odom", "--no-arr")
