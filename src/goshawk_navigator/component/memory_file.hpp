@@ -1,7 +1,7 @@
 #pragma once
 
-#include <functional>
 #include <string>
+#include <vector>
 
 #include "goshawk/navigator/navigator.hpp"
 #include "goshawk_msgs.h"
@@ -13,8 +13,8 @@ using PublishedLeg = goshawk_msgs::msg::CommittedTrajectory;
 
 /// What is kept in the file: Memory, with legs as messages, for others read them.
 struct StoredMemory {
-  Memory memory;  // without legs
-  std::vector<PublishedLeg> legs;
+  Memory memory = {};  // without legs
+  std::vector<PublishedLeg> legs = {};
 };
 
 /// The bytes of the file, and back.

@@ -226,9 +226,8 @@ class NavigatorComponent : public Component {
   }
 
   // Before anything is published: the navigator after this one then knows what others may have.
-  void remember(const std::vector<Order>& orders) {
-    if (orders.empty()) return;
-    StoredMemory stored{.memory = navigator_.memory(), .legs = {}};
+  void remember() {
+    StoredMemory stored{.memory = navigator_.memory()};
     for (const Leg& leg : stored.memory.legs) {
       const auto at = std::ranges::find(published_, leg.id(), &id_of);
       if (at != published_.end()) stored.legs.push_back(*at);
@@ -244,11 +243,12 @@ class NavigatorComponent : public Component {
 
   void carry_out() {
     const auto orders = navigator_.take_orders();
+    if (orders.empty()) return;
     for (const Order& order : orders) {
       if (const auto* commit = std::get_if<Commit>(&order)) published_.push_back(message_of(*commit));
     }
     const auto legs = published_;
-    remember(orders);
+    remember();
     for (const Order& order : orders) {
       if (const auto* commit = std::get_if<Commit>(&order)) publish(*commit, legs);
       if (const auto* request = std::get_if<PlanRequest>(&order)) publish(*request);

@@ -1,6 +1,7 @@
 #include "../component/memory_file.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>

@@ -15,13 +15,13 @@ constexpr std::int64_t kTilesFromVoxels = std::int64_t{1} << 20;
 /// JA* with the labels that suit the size of the map.
 class JaStar final : public GridPlanner {
  public:
-  explicit JaStar(CornerRule rule) : rule_(rule), planner_(make(false)) {}
+  explicit JaStar(CornerRule rule) : rule_(rule), planner_(make_jastar(rule, false)) {}
 
   std::string_view name() const override { return planner_->name(); }
   using GridPlanner::set_map;
   void set_map(const BitGrid& blocked, const BitGrid* known) override {
     const bool tiled = blocked.voxels() >= kTilesFromVoxels;
-    if (tiled != tiled_) planner_ = make(tiled);
+    if (tiled != tiled_) planner_ = make_jastar(rule_, tiled);
     tiled_ = tiled;
     planner_->set_map(blocked, known);
   }
@@ -31,19 +31,18 @@ class JaStar final : public GridPlanner {
   }
 
  private:
-  std::unique_ptr<GridPlanner> make(bool tiled) const {
-    if (tiled) {
-      return std::make_unique<GridSearch<OctileHeuristic, true, TiledLabels>>("jastar", rule_);
-    }
-    return std::make_unique<GridSearch<OctileHeuristic, true, LabelTable>>("jastar", rule_);
-  }
-
   CornerRule rule_;
   std::unique_ptr<GridPlanner> planner_;
   bool tiled_ = false;
 };
 
 }  // namespace
+
+std::unique_ptr<GridPlanner> make_jastar(CornerRule rule, bool tiled) {
+  if (tiled)
+    return std::make_unique<GridSearch<OctileHeuristic, true, TiledLabels>>("jastar", rule);
+  return std::make_unique<GridSearch<OctileHeuristic, true, LabelTable>>("jastar", rule);
+}
 
 std::unique_ptr<GridPlanner> make_grid_search(Planner planner, CornerRule rule) {
   switch (planner) {

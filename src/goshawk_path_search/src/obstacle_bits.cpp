@@ -10,9 +10,9 @@ namespace {
 // So many changed voxels, at most one in this many words of the map, are forgotten one by one.
 constexpr std::int64_t kWordsAChange = 64;
 
-// Of the words that say where jumps stop: they begin 64 bits before the copy, for a window that ends
-// near its beginning.
-std::size_t word_at(std::int64_t position) {
+// Of the words that say where jumps stop: they begin 64 bits before the copy, for a window that
+// ends near its beginning.
+std::size_t stop_word(std::int64_t position) {
   return std::size_t((position >> 6) + 1);
 }
 
@@ -148,8 +148,8 @@ void ObstacleBits::forget_around(Copy& copy, std::int64_t p) {
     for (const std::int64_t u : {-copy.stride_u, std::int64_t{0}, copy.stride_u}) {
       const std::int64_t row = p + v + u;
       for (const std::int64_t q : {row - 1, row + 1}) {
-        copy.ahead.forget(word_at(q));
-        copy.behind.forget(word_at(q));
+        copy.ahead.forget(stop_word(q));
+        copy.behind.forget(stop_word(q));
       }
     }
   }
@@ -181,7 +181,7 @@ int ObstacleBits::straight_jump(CornerRule rule, int axis, int sign, Index3 from
   const std::int64_t p = position(copy, u, v, w);
   // The window begins, or ends, at the voxel itself.
   const std::int64_t low = sign > 0 ? p : p - 63;
-  const std::size_t first = word_at(low);
+  const std::size_t first = stop_word(low);
   const int shift = int(low & 63);
   const auto stops = [&](const LazyWords& words, std::size_t word) {
     if (!words.is_known(word)) find_stops(copy, word);

@@ -14,4 +14,7 @@ namespace goshawk::path_search {
 /// @param planner jastar to dijkstra; others throw std::invalid_argument
 std::unique_ptr<GridPlanner> make_grid_search(Planner planner, CornerRule rule);
 
+/// JA* with labels in tiles or in rows, whatever the size of the map.
+std::unique_ptr<GridPlanner> make_jastar(CornerRule rule, bool tiled);
+
 }  // namespace goshawk::path_search
