@@ -9,6 +9,8 @@
 namespace goshawk::map_server {
 namespace {
 
+constexpr int kFarthest = 1 << 26;  // [voxels] from the origin of the frame; beyond lies no map
+
 static_assert(std::endian::native == std::endian::little, "journals are little-endian");
 
 /// Collects entries until the last one of their batch is there.
@@ -44,6 +46,11 @@ class BatchReader {
   JournalContent& content_;
   std::vector<JournalEntry> batch_;
 };
+
+bool is_whole(const JournalEntry& entry) {
+  return entry.checksum == checksum_of_block(entry) &&
+         std::ranges::all_of(entry.corner, [](int v) { return v >= -kFarthest && v <= kFarthest; });
+}
 
 Status check_head(const JournalHead& head, const JournalIdentity& identity) {
   if (head.magic != kJournalMagic || head.checksum != checksum_of_block(head)) {
@@ -116,7 +123,7 @@ Result<JournalContent> read_journal(std::span<const std::byte> bytes,
     JournalEntry entry;
     const bool cut_off = bytes.size() - at < sizeof entry;
     if (!cut_off) std::memcpy(&entry, bytes.data() + at, sizeof entry);
-    if (cut_off || entry.checksum != checksum_of_block(entry)) {
+    if (cut_off || !is_whole(entry)) {
       batches.drop();
       ++content.damaged;
       if (cut_off) break;

@@ -201,6 +201,16 @@ TEST_F(Journal, OfALiveMapGivesTheMapBack) {
   EXPECT_EQ(restored.grid().grown, map.grid().grown);
 }
 
+TEST_F(Journal, ABrickThatNoMapReachesIsDamage) {
+  JournalBrick brick = random_brick(random_, 1);
+  brick.corner.y = 1 << 30;
+  MapJournal journal = MapJournal::create(path_, kIdentity).value();
+  ASSERT_TRUE(journal.append(1, {&brick, 1}));
+  const JournalContent content = read_whole(map_server::testing::bytes_of(path_));
+  EXPECT_TRUE(content.bricks.empty());
+  EXPECT_EQ(content.damaged, 1);
+}
+
 // A window that moves leaves behind what the journal keeps.
 TEST_F(Journal, OfAMapThatFollowsCoversAllBricks) {
   const GridGeometry geometry{Vec3(-0.4, 1.2, 0.0), 0.2, {70, 20, 12}};

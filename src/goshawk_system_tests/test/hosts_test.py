@@ -7,6 +7,8 @@
 import json
 import math
 import os
+import re
+import shlex
 import shutil
 import unittest
 
@@ -219,6 +221,41 @@ class Discovery(LabTest):
         state = stack.fly_to(PLACES[0])
         self.assertIsNotNone(state, stack.tails())
         self.assertEqual(state["state"], "arrived", state)
+
+
+class Page(LabTest):
+    """The commands of docs/hosts.md, in their order, each on the host of its prompt."""
+
+    def commands(self):
+        for line in (harness.SOURCE / "docs/hosts.md").read_text(encoding="utf-8").splitlines():
+            match = re.match(r"    (vehicle|ground)\$ (.*)", line)
+            if match:
+                yield self.lab.hosts[match.group(1)], match.group(2)
+
+    def run_on(self, host, line):
+        words = shlex.split(line)
+        if words[0] == "export":
+            host.env.update([words[1].split("=", 1)])
+            return None
+        # `fastdds discovery` starts this, and leaves it alive when it is stopped itself.
+        if words[:2] == ["fastdds", "discovery"]:
+            return host.start("fast-discovery-server", *words[2:])
+        self.assertEqual(words[0], "tools/goshawk", line)
+        if words[1] == "launch":
+            process = host.start(GOSHAWK, *words[1:])
+            up = until(lambda: "every essential stage runs" in process.out(), 60.0)
+            self.assertTrue(up, str(process.outcome()))
+            return process
+        outcome = host.goshawk(*words[1:])
+        self.assertEqual(outcome.status, 0, str(outcome))
+        return None
+
+    def test_each_works(self):
+        commands = list(self.commands())
+        self.assertGreater(len(commands), 7)
+        endless = [self.run_on(host, line) for host, line in commands]
+        for process in filter(None, endless):
+            self.assertTrue(process.alive(), str(process.outcome()))
 
 
 class WithoutNamespaces(unittest.TestCase):
