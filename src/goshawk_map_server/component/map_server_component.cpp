@@ -40,7 +40,7 @@ Beginning begin(const Config& config, Node& node) {
   return *std::move(beginning);
 }
 
-/// A map file, and cloud_in -> map/voxels, map/voxels/updates, octomap_binary
+/// A map file; cloud_in, odom, /tf and /tf_static -> map/voxels, map/voxels/updates, octomap_binary
 class MapServerComponent : public Component {
  public:
   explicit MapServerComponent(Node& node)
@@ -116,14 +116,22 @@ class MapServerComponent : public Component {
   }
 
   void on_odometry(const nav_msgs::msg::Odometry& m) {
+    const auto status = take_odometry(m);
+    // Odometry comes fast: the same fault is told once.
+    const ErrorCode code = status ? ErrorCode::ok : status.code();
+    if (code == odometry_code_) return;
+    odometry_code_ = code;
+    if (!status) reporter_.fault(status.error());
+  }
+
+  Status take_odometry(const nav_msgs::msg::Odometry& m) {
     const auto state = conversions::from_msg(m);
-    if (!state) return reporter_.fault(state.error());
-    const std::int64_t stamp_ns = conversions::to_ns(m.header().stamp());
-    if (auto s = odometry_.add(stamp_ns, {state->position_map, state->q_map_base}); !s) {
-      placed_ns_ = 0;
-      reporter_.fault(s.error());
-    }
+    if (!state) return state.error();
+    const auto status = odometry_.add(conversions::to_ns(m.header().stamp()),
+                                      {state->position_map, state->q_map_base});
+    if (!status) placed_ns_ = 0;
     place_waiting();
+    return status;
   }
 
   void on_frames(const tf2_msgs::msg::TFMessage& m, bool fixed) {
@@ -260,6 +268,7 @@ class MapServerComponent : public Component {
   PlacedCloud placed_;           // their memory is used again
   std::vector<Vec3> body_path_;  // since the scan before
   std::int64_t placed_ns_ = 0;   // end of the scan before; 0: none
+  ErrorCode odometry_code_ = ErrorCode::ok;
   bool changed_ = false;
 };
 

@@ -34,10 +34,10 @@ Status place(const SensorCloud& cloud, const FrameTree::Chain& to_base, const Po
   const bool one_moment = span.first_ns == span.last_ns;
   if (one_moment) placed.origins_map.push_back(first->position);
 
-  // A slice is looked up when its first point comes; the last one ends at the last point.
+  // A slice is looked up when its first point comes: its middle, or the end of all.
   const auto slices = std::size_t((span.last_ns - span.first_ns) / kSlice_ns) + 1;
   std::vector<std::optional<Pose>> poses(slices);
-  poses[0] = *first;
+  if (one_moment) poses[0] = *first;
   for (std::size_t i = 0; i < cloud.points.size(); ++i) {
     std::size_t slice = 0;
     if (!one_moment) {

@@ -7,6 +7,8 @@
 namespace goshawk::map_server {
 namespace {
 
+constexpr std::int64_t kReordered_ns = 100'000'000;  // so late a datagram may come after its follower
+
 double seconds(std::int64_t ns) {
   return 1e-9 * double(ns);
 }
@@ -28,6 +30,7 @@ Status PoseBuffer::add(std::int64_t stamp_ns, const Pose& pose) {
     return success();
   }
   if (!poses_.empty() && stamp_ns < newest_ns()) {
+    if (stamp_ns >= newest_ns() - kReordered_ns) return success();
     const double back_s = seconds(newest_ns() - stamp_ns);
     poses_.clear();
     poses_.push_back({stamp_ns, pose});

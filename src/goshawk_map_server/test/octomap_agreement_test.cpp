@@ -2,6 +2,9 @@
 // touches so closely that OctoMap's floats decide.
 #include <gtest/gtest.h>
 #include <octomap/OcTree.h>
+#include <octomap/octomap_utils.h>
+
+#include <algorithm>
 
 #include "goshawk/core/random.hpp"
 #include "goshawk/map_server/live_map.hpp"

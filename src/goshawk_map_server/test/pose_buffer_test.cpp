@@ -68,6 +68,14 @@ TEST(PoseBuffer, AClockThatJumpsBackForgetsWhatWasBefore) {
   ASSERT_TRUE(buffer.add(50 * kSecond + 1, turned(3, 0)));
 }
 
+TEST(PoseBuffer, APoseOutOfOrderIsDropped) {
+  PoseBuffer buffer = odometry();
+  ASSERT_TRUE(buffer.add(kSecond, turned(1, 0)));
+  ASSERT_TRUE(buffer.add(kSecond + kSecond / 50, turned(3, 0)));
+  EXPECT_TRUE(buffer.add(kSecond + kSecond / 100, turned(99, 0)));
+  EXPECT_NEAR(buffer.at(kSecond + kSecond / 100).value().position.x(), 2.0, 1e-9);
+}
+
 TEST(PoseBuffer, TheSameStampAgainReplacesAndZeroIsRefused) {
   PoseBuffer buffer = odometry();
   EXPECT_EQ(buffer.add(0, turned(1, 0)).code(), ErrorCode::invalid_input);

@@ -28,9 +28,9 @@ class PoseBuffer {
   /// two that are farther apart
   PoseBuffer(std::string_view what, double kept_s, double max_gap_s);
 
-  /// A pose with the stamp of the newest takes its place. @return clock_set if the stamp lies
-  /// before the newest: all poses before are forgotten, and this one is kept; invalid_input for
-  /// a stamp of zero, which is not kept
+  /// A pose with the stamp of the newest takes its place; one that is up to 0.1 s older came out of
+  /// order and is dropped. @return clock_set if it is older than that: all poses before are
+  /// forgotten, and this one is kept; invalid_input for a stamp of zero, which is not kept
   Status add(std::int64_t stamp_ns, const Pose& pose);
 
   /// Interpolated: the position linearly, the attitude along the shortest arc.
