@@ -7,6 +7,8 @@ import shutil
 
 import yaml
 
+import topic_rights
+
 FILE_KEYS = {"namespace", "domain", "container", "params_files", "hosts", "stages"}
 STAGE_KEYS = {"component", "node", "params", "remap", "command", "name", "realtime", "essential",
               "host"}
@@ -141,8 +143,9 @@ def is_essential(stage):
 class Program:
     """One process to start."""
 
-    def __init__(self, name, command, essential, nodes):
+    def __init__(self, name, command, essential, nodes, role=""):
         self.name, self.command, self.essential, self.nodes = name, command, essential, nodes
+        self.role = role  # under which it is certified (goshawk secure init)
 
 
 class Plan:
@@ -159,6 +162,7 @@ class Plan:
         self.params_files = [self.beside(str(f)) for f in content.get("params_files", [])]
         self.stages = content["stages"]
         self.in_container = content.get("container", False)
+        self.secure = ""  # folder of goshawk secure init; empty: without DDS Security
         self.extra = list(extra)
 
     def beside(self, path):
@@ -205,7 +209,21 @@ class Plan:
             if names.count(name) > 1:
                 raise WrongCall(f"two stages are named {name}: give one of them another node or "
                                 "name")
-        return programs
+        return [self.secured(p) for p in programs] if self.secure else programs
+
+    def secured(self, program):
+        """The program with the certificate of its role; raises WrongCall if there is none."""
+        if program.role == "":
+            raise WrongCall(f"{self.path}: with --secure each stage is a process of its own, with "
+                            "its own rights: set container: false")
+        profile = os.path.join(self.secure, program.role, "profile.xml")
+        if not os.path.isfile(profile):
+            raise WrongCall(f"{self.secure} has no certificate for {program.role}: make the folder "
+                            f"with goshawk secure init, and --like {program.role}=ROLE for a "
+                            "program of your own")
+        program.command = ["/usr/bin/env", f"FASTRTPS_DEFAULT_PROFILES_FILE={profile}",
+                           *program.command]
+        return program
 
     def component_program(self, stages):
         nodes = [str(s.get("node", s["component"])) for s in stages]
@@ -215,14 +233,16 @@ class Plan:
         if self.in_container:
             return Program("container", command, True, full_names)
         stage = stages[0]
-        return Program(nodes[0], with_priority(stage, command), is_essential(stage), full_names)
+        return Program(nodes[0], with_priority(stage, command), is_essential(stage), full_names,
+                       topic_rights.role_of(stage["component"]))
 
     def command_program(self, number, stage):
         words = [scalar(word) for word in stage["command"]]
         words[0] = self.executable(words[0], f"{self.path}, stage {number}")
         name = str(stage.get("name", os.path.basename(words[0])))
+        recorder = [os.path.basename(words[0]), *words[1:2]] == ["goshawk", "record"]
         return Program(name, with_priority(stage, words), is_essential(stage),
-                       [self.full_name(name)])
+                       [self.full_name(name)], "recorder" if recorder else name)
 
     def executable(self, program, place):
         """The program's path; raises WrongCall unless it can be started."""

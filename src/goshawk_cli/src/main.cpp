@@ -46,6 +46,7 @@ void describe(Program& program) {
   add_place(program);
   add_view(program);
   add_run(program);
+  add_secure(program);
   add_bench(program);
   add_conform(program);
   add_record(program);

@@ -45,6 +45,7 @@ constexpr std::array kNames{
     CodeName{ErrorCode::process_stalled, "process_stalled"},
     CodeName{ErrorCode::clock_set, "clock_set"},
     CodeName{ErrorCode::second_writer, "second_writer"},
+    CodeName{ErrorCode::not_permitted, "not_permitted"},
 };
 
 constexpr auto kCodes = [] {

@@ -65,23 +65,31 @@ class FlightCheckComponent : public Component {
         config_(node.parameters<Config>()),
         reporter_(node, StageRole::flight_check, "fcl") {
     if (auto status = config_.body.check(); !status) throw StartupFault(status.error());
-    node.subscribe<Octomap>("octomap_binary", Qos::latched(),
-                            [this](const Octomap& m, const MessageInfo&) { new_map_ = m; });
+    node.subscribe<Octomap>(
+        "octomap_binary", Qos::latched(),
+        [this](const Octomap& m, const MessageInfo&) { new_map_ = m; },
+        Writers::one("octomap_binary"));
     node.subscribe<msg::CommittedTrajectory>(
         "committed_trajectory", Qos::latched(),
-        [this](const msg::CommittedTrajectory& m, const MessageInfo& info) { on_commit(m, info); });
-    node.subscribe<Odometry>("odom", Qos::best_effort(100),
-                             [this](const Odometry& m, const MessageInfo&) {
-                               if (!knows_truth_) on_odometry(m);
-                             });
-    node.subscribe<Odometry>("odom_true", Qos::best_effort(100),
-                             [this](const Odometry& m, const MessageInfo&) {
-                               if (!std::exchange(knows_truth_, true)) watch_.forget_track();
-                               on_odometry(m);
-                             });
+        [this](const msg::CommittedTrajectory& m, const MessageInfo& info) { on_commit(m, info); },
+        Writers::one("committed_trajectory"));
+    node.subscribe<Odometry>(
+        "odom", Qos::best_effort(100),
+        [this](const Odometry& m, const MessageInfo&) {
+          if (!knows_truth_) on_odometry(m);
+        },
+        Writers::one("odom"));
+    node.subscribe<Odometry>(
+        "odom_true", Qos::best_effort(100),
+        [this](const Odometry& m, const MessageInfo&) {
+          if (!std::exchange(knows_truth_, true)) watch_.forget_track();
+          on_odometry(m);
+        },
+        Writers::one("odom_true"));
     node.subscribe<msg::VehicleStatus>(
         "vehicle_status", Qos::best_effort(),
-        [this](const msg::VehicleStatus& m, const MessageInfo&) { on_status(m); });
+        [this](const msg::VehicleStatus& m, const MessageInfo&) { on_status(m); },
+        Writers::one("vehicle_status"));
     node.every(config_.period_s, [this] {
       read_map();
       watch_.tick(seconds(node_.now_ns()));

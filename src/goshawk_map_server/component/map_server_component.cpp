@@ -63,7 +63,8 @@ class MapServerComponent : public Component {
         [this](const sensor_msgs::msg::PointCloud2& m, const MessageInfo&) { on_cloud(m); });
     node.subscribe<nav_msgs::msg::Odometry>(
         "odom", Qos::best_effort(50),
-        [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) { on_odometry(m); });
+        [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) { on_odometry(m); },
+        Writers::one("odom"));
     node.subscribe<tf2_msgs::msg::TFMessage>(
         "/tf_static", Qos::latched(100),
         [this](const tf2_msgs::msg::TFMessage& m, const MessageInfo&) { on_frames(m, true); });

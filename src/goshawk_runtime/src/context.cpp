@@ -106,12 +106,12 @@ void filter_transports(dds::TransportConfigQos& transports, const wire::FilterOp
 }
 
 dds::DomainParticipantQos participant_qos(const ContextOptions& options,
-                                          const std::shared_ptr<wire::Refusals>& refusals) {
+                                          const wire::FilterOptions& filter) {
   auto* factory = dds::DomainParticipantFactory::get_instance();
   factory->load_profiles();
   dds::DomainParticipantQos qos = factory->get_default_participant_qos();
   if (std::getenv("FASTRTPS_DEFAULT_PROFILES_FILE") == nullptr) use_udp(qos, options.interfaces);
-  filter_transports(qos.transport(), {refusals, options.tap});
+  filter_transports(qos.transport(), filter);
   auto& discovery = qos.wire_protocol().builtin.discovery_config;
   // A client hears only of what it writes and reads, but `goshawk node list` asks for all.
   if (!rtps::ros_discovery_server_env().empty() &&
@@ -163,9 +163,12 @@ Result<std::unique_ptr<Context>> Context::create(const ContextOptions& options) 
   if (auto status = check_interfaces(options.interfaces); !status) return status.error();
   auto impl = std::make_unique<Impl>();
   impl->domain = options.domain;
+  const wire::FilterOptions filter{impl->refusals, impl->senders, options.tap};
   auto* factory = dds::DomainParticipantFactory::get_instance();
-  impl->participant = factory->create_participant(dds::DomainId_t(options.domain),
-                                                  participant_qos(options, impl->refusals),
+  const auto qos = participant_qos(options, filter);
+  impl->has_permissions = rtps::PropertyPolicyHelper::find_property(
+                              qos.properties(), "dds.sec.access.plugin") != nullptr;
+  impl->participant = factory->create_participant(dds::DomainId_t(options.domain), qos,
                                                   &impl->listener, dds::StatusMask::none());
   if (impl->participant == nullptr) {
     return fail(
@@ -201,6 +204,12 @@ Context::Impl::~Impl() {
   if (participant == nullptr) return;
   participant->delete_contained_entities();
   dds::DomainParticipantFactory::get_instance()->delete_participant(participant);
+}
+
+std::string Context::Impl::why_no_endpoint() const {
+  return has_permissions ? "the permissions of this process' certificate do not allow it (goshawk "
+                           "secure init), or another type uses this topic here"
+                         : "another type uses this topic in this process, or its profile is wrong";
 }
 
 dds::Topic* Context::Impl::topic(const std::string& ros_name, const dds::TypeSupport& type) {

@@ -5,10 +5,12 @@
 #include <fastdds/dds/publisher/Publisher.hpp>
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 
+#include <chrono>
 #include <map>
 #include <mutex>
 
 #include "goshawk/runtime/context.hpp"
+#include "one_writer.hpp"
 #include "wire/receive_filter.hpp"
 
 namespace goshawk::runtime {
@@ -29,15 +31,25 @@ class DiscoveryListener : public dds::DomainParticipantListener {
   std::vector<ParticipantInfo> participants() const;
   std::vector<EndpointInfo> endpoints() const;
 
+  /// Nodes, process and GUID of a participant, for a sentence.
+  std::string describe(const Participant& participant) const;
+  /// @return whether it says that it runs nodes, as stages do
+  bool has_nodes(const Participant& participant) const;
+  /// @return whether it left without a word, which a stopped process does, at most within_s ago
+  bool fell_silent(const Participant& participant, double within_s) const;
+
  private:
   mutable std::mutex mutex_;
   std::map<std::string, ParticipantInfo> participants_;
   std::map<std::string, EndpointInfo> endpoints_;
+  std::map<std::string, std::chrono::steady_clock::time_point> silent_since_;
 };
 
 struct Context::Impl {
   int domain = 0;
   std::shared_ptr<wire::Refusals> refusals = std::make_shared<wire::Refusals>();
+  std::shared_ptr<wire::SenderTable> senders = std::make_shared<wire::SenderTable>();
+  bool has_permissions = false;  // DDS Security decides who may write what
   DiscoveryListener listener;
   dds::DomainParticipant* participant = nullptr;
   dds::Publisher* publisher = nullptr;
@@ -47,6 +59,8 @@ struct Context::Impl {
   /// The topic object of that name, made at first use. @return nullptr if it exists with
   /// another type
   dds::Topic* topic(const std::string& ros_name, const dds::TypeSupport& type);
+  /// Why no reader or writer could be made: the middleware does not say.
+  std::string why_no_endpoint() const;
 
  private:
   std::mutex topics_mutex_;

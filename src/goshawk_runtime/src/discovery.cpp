@@ -6,6 +6,22 @@
 namespace goshawk::runtime {
 namespace {
 
+constexpr std::size_t kMostSilent = 256;
+constexpr std::size_t kLongestToldName = 80;
+
+rtps::GuidPrefix_t prefix_of(const Participant& participant) {
+  rtps::GuidPrefix_t prefix;
+  std::ranges::transform(participant, std::begin(prefix.value),
+                         [](std::byte b) { return static_cast<rtps::octet>(b); });
+  return prefix;
+}
+
+// What strangers say of themselves goes into logs.
+std::string printable(std::string text) {
+  std::erase_if(text, [](unsigned char c) { return c < 0x20 || c >= 0x7f; });
+  return text.substr(0, kLongestToldName);
+}
+
 template <typename T>
 std::string text(const T& value) {
   std::ostringstream out;
@@ -55,9 +71,15 @@ void DiscoveryListener::on_participant_discovery(dds::DomainParticipant*,
   if (info.status == rtps::ParticipantDiscoveryInfo::REMOVED_PARTICIPANT ||
       info.status == rtps::ParticipantDiscoveryInfo::DROPPED_PARTICIPANT) {
     participants_.erase(key);
+    silent_since_.erase(key);
+    if (info.status == rtps::ParticipantDiscoveryInfo::DROPPED_PARTICIPANT) {
+      if (silent_since_.size() >= kMostSilent) silent_since_.erase(silent_since_.begin());
+      silent_since_[key] = std::chrono::steady_clock::now();
+    }
     std::erase_if(endpoints_, [&](const auto& entry) { return entry.second.participant == key; });
     return;
   }
+  silent_since_.erase(key);
   const std::string user_data(info.info.m_userData.begin(), info.info.m_userData.end());
   participants_[key] = {key, info.info.m_participantName.to_string(), nodes_in(user_data),
                         version_in(user_data)};
@@ -85,6 +107,35 @@ void DiscoveryListener::on_subscriber_discovery(dds::DomainParticipant* self,
   } else {
     endpoints_[key] = endpoint(info.info, false);
   }
+}
+
+bool DiscoveryListener::fell_silent(const Participant& participant, double within_s) const {
+  const std::lock_guard lock(mutex_);
+  const auto at = silent_since_.find(text(prefix_of(participant)));
+  if (at == silent_since_.end()) return false;
+  const std::chrono::duration<double> since = std::chrono::steady_clock::now() - at->second;
+  return since.count() < within_s;
+}
+
+bool DiscoveryListener::has_nodes(const Participant& participant) const {
+  const std::lock_guard lock(mutex_);
+  const auto at = participants_.find(text(prefix_of(participant)));
+  return at != participants_.end() && !at->second.nodes.empty();
+}
+
+std::string DiscoveryListener::describe(const Participant& participant) const {
+  const std::lock_guard lock(mutex_);
+  const std::string guid = text(prefix_of(participant));
+  const auto at = participants_.find(guid);
+  if (at == participants_.end()) return "a participant that has left (GUID " + guid + ")";
+  std::string nodes;
+  for (const auto& node : at->second.nodes) nodes += (nodes.empty() ? "" : ", ") + node;
+  std::string name = printable(at->second.name);
+  constexpr std::string_view kOurs = "goshawk_";
+  if (name.starts_with(kOurs)) name = "process " + name.substr(kOurs.size());
+  if (name.empty()) name = "a participant";
+  if (nodes.empty()) return name + " (GUID " + guid + ")";
+  return printable(nodes) + " (" + name + ", GUID " + guid + ")";
 }
 
 std::vector<ParticipantInfo> DiscoveryListener::participants() const {

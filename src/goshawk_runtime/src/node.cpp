@@ -4,13 +4,13 @@
 #include <spdlog/spdlog.h>
 
 #include <fastrtps/types/TypesBase.h>
-#include <bit>
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <fastdds/dds/publisher/DataWriter.hpp>
-#include <fastdds/dds/subscriber/SampleInfo.hpp>
 
 #include "any_type.hpp"
+#include "apply_qos.hpp"
 #include "node_impl.hpp"
 
 namespace goshawk::runtime {
@@ -20,8 +20,7 @@ using eprosima::fastrtps::types::ReturnCode_t;
 namespace {
 
 constexpr double kLongest_s = 1e6;  // longer waits count as for ever
-// A flood on one topic must not starve timers and the other topics of the node.
-constexpr int kMostAtOnce = 64;
+constexpr double kLookAtKept_s = 0.05;
 
 double clamped(double timeout_s) {
   return timeout_s > 0.0 ? std::min(timeout_s, kLongest_s) : 0.0;  // NaN: no wait
@@ -86,30 +85,6 @@ bool RawPublisher::wait_acknowledged(double timeout_s) const {
   return writer_->wait_acknowledged(timeout_s);
 }
 
-namespace {
-
-template <typename EndpointQos>
-void apply(const Qos& qos, EndpointQos& out) {
-  out.reliability().kind =
-      qos.reliable ? dds::RELIABLE_RELIABILITY_QOS : dds::BEST_EFFORT_RELIABILITY_QOS;
-  out.durability().kind =
-      qos.transient_local ? dds::TRANSIENT_LOCAL_DURABILITY_QOS : dds::VOLATILE_DURABILITY_QOS;
-  out.history().kind = dds::KEEP_LAST_HISTORY_QOS;
-  out.history().depth = qos.depth;
-  out.resource_limits().max_samples = 0;  // only the depth limits
-  out.resource_limits().max_samples_per_instance = qos.depth;
-  // Buffers as large as a message needs, reused: a latched map must not be stored twice.
-  out.endpoint().history_memory_policy =
-      rtps::MemoryManagementPolicy_t::DYNAMIC_REUSABLE_MEMORY_MODE;
-}
-
-bool may_be_megabytes(std::string_view wire_name) {
-  return wire_name.ends_with("::VoxelGrid_") || wire_name.ends_with("::Octomap_") ||
-         wire_name.ends_with("::PointCloud2_");
-}
-
-}  // namespace
-
 void Node::Impl::wait(double timeout_s) {
   // Messages, not waiting, make timers of simulated time due.
   if (!time.on) {
@@ -117,6 +92,8 @@ void Node::Impl::wait(double timeout_s) {
       timeout_s = std::min(timeout_s, double(timer.next_ns - timer_now_ns()) * 1e-9);
     }
   }
+  const bool keeps = std::ranges::any_of(subscriptions, [](auto& s) { return !s->kept.empty(); });
+  if (keeps) timeout_s = std::min(timeout_s, kLookAtKept_s);
   wait_set.wait(active, to_duration(more ? 0.0 : timeout_s));
 }
 
@@ -138,46 +115,6 @@ void Node::Impl::run_due_timers(const Node& node) {
   }
 }
 
-template <typename Callback, typename... Arguments>
-void Node::Impl::call(const Node& node, const std::string& what, const Callback& callback,
-                      const Arguments&... arguments) {
-  try {
-    callback(arguments...);
-  } catch (const std::exception& e) {
-    node.log_->critical("the callback of {} threw: {}. This is a bug; the process ends", what,
-                        e.what());
-    throw;
-  }
-}
-
-std::int64_t Node::Impl::waited_ns(const dds::SampleInfo& info) const {
-  if (time.on) return 0;  // Fast DDS stamps with the system's clock
-  return std::max<std::int64_t>(0, SystemClock().now_ns() - info.reception_timestamp.to_ns());
-}
-
-int Node::Impl::take_some(const Node& node, Subscription& s) {
-  dds::SampleInfo info;
-  Sample sample{s.type.get(), s.object};
-  for (int i = 0; i < kMostAtOnce; ++i) {
-    sample.decoded = false;
-    if (s.reader->take_next_sample(&sample, &info) != ReturnCode_t::RETCODE_OK) return i;
-    if (!info.valid_data) continue;
-    if (!sample.decoded) {
-      // Logs the 1st, 2nd, 4th, 8th ...: a hostile sender must not fill the disk.
-      if (std::has_single_bit(++s.undecoded)) {
-        node.log_->warn("a message on {} could not be decoded and was dropped ({} so far): {}",
-                        s.topic, s.undecoded,
-                        sample.fault.empty() ? "does its sender use the same IDL?" : sample.fault);
-      }
-      continue;
-    }
-    call(node, s.topic, s.callback, s.object,
-         MessageInfo{node.now_ns(), waited_ns(info), info.source_timestamp.to_ns()});
-    if (stopping) return i + 1;
-  }
-  return kMostAtOnce;
-}
-
 bool Node::Impl::serve(const Node& node) {
   bool any = false;
   more = false;
@@ -187,6 +124,7 @@ bool Node::Impl::serve(const Node& node) {
     any = any || taken > 0;
     more = more || taken == kMostAtOnce;
   }
+  look_at_kept(node);
   for (auto& callback : std::exchange(deferred, {})) {
     if (!stopping) call(node, "deferred work", callback);
   }
@@ -203,6 +141,9 @@ Node::Node(Context& context, std::string name, RosArgs args, std::shared_ptr<con
   log_->set_pattern("%Y-%m-%d %H:%M:%S.%e [%n] %l: %v");
   log_->set_level(spdlog::level::from_str(args_.log_level));
   log_->flush_on(spdlog::level::info);
+  impl_->on_second_writer = [log = log_](const Error& error) {
+    log->warn("{}: {}", to_string(error.code), error.message);
+  };
 }
 
 Node::~Node() = default;
@@ -244,64 +185,11 @@ std::shared_ptr<detail::Writer> Node::make_writer(std::string_view topic, const 
   auto* writer =
       dds_topic == nullptr ? nullptr : publisher->create_datawriter(dds_topic, writer_qos);
   if (writer == nullptr) {
-    throw StartupFault(
-        fail(ErrorCode::io_failed,
-             name_ + " cannot write " + name + " as " + type.name() +
-                 ": another type uses this topic in this process, or its profile is wrong"));
+    throw StartupFault(fail(ErrorCode::io_failed, name_ + " cannot write " + name + " as " +
+                                                      type.name() + ": " +
+                                                      impl_->context.why_no_endpoint()));
   }
   return std::make_shared<detail::Writer>(publisher, writer, type.impl().support, name);
-}
-
-std::unique_ptr<Subscription> Node::Impl::open(const Node& node, const std::string& name,
-                                               const MessageType& type, Qos qos,
-                                               Node::RawCallback callback) {
-  auto* dds_topic = context.topic(name, type.impl().support);
-  dds::DataReaderQos reader_qos;
-  bool own_port = false;
-  if (context.subscriber->get_datareader_qos_from_profile(name, reader_qos) !=
-      ReturnCode_t::RETCODE_OK) {
-    reader_qos = dds::DATAREADER_QOS_DEFAULT;
-    apply(qos, reader_qos);
-    // A process has one receiving thread for all other topics, where a setpoint would wait behind
-    // the hundreds of datagrams of a map. In lock step everything comes in order through one
-    // socket.
-    own_port = may_be_megabytes(type.name()) && !time.takes_turns &&
-               std::getenv("FASTRTPS_DEFAULT_PROFILES_FILE") == nullptr;
-  }
-  const auto create = [&] {
-    return dds_topic == nullptr ? nullptr
-                                : context.subscriber->create_datareader(dds_topic, reader_qos);
-  };
-  dds::DataReader* reader = nullptr;
-  if (own_port) {
-    auto& properties = reader_qos.properties().properties();
-    properties.emplace_back("fastdds.unique_network_flows", "true");
-    reader = create();
-    if (reader == nullptr) properties.pop_back();  // all ports are taken
-  }
-  if (reader == nullptr) reader = create();
-  if (reader == nullptr) {
-    throw StartupFault(
-        fail(ErrorCode::io_failed,
-             node.name_ + " cannot read " + name + " as " + type.name() +
-                 ": another type uses this topic in this process, or its profile is wrong"));
-  }
-  auto subscription = std::make_unique<Subscription>();
-  subscription->reader = reader;
-  subscription->topic = name;
-  subscription->type = type.impl().support;
-  subscription->object = subscription->type.create_data();
-  subscription->callback = std::move(callback);
-  reader->get_statuscondition().set_enabled_statuses(dds::StatusMask::data_available());
-  return subscription;
-}
-
-void Node::subscribe_raw(std::string_view topic, const MessageType& type, Qos qos,
-                         RawCallback callback) {
-  auto subscription =
-      impl_->open(*this, args_.resolve_topic(topic, name_), type, qos, std::move(callback));
-  impl_->wait_set.attach_condition(subscription->reader->get_statuscondition());
-  impl_->subscriptions.push_back(std::move(subscription));
 }
 
 void Node::every(double period_s, std::function<void()> callback) {
@@ -314,14 +202,21 @@ void Node::every(double period_s, std::function<void()> callback) {
   impl_->timers.push_back({period_ns, impl_->timer_now_ns() + period_ns, std::move(callback)});
 }
 
+void Node::on_second_writer(std::function<void(const Error&)> callback) {
+  impl_->on_second_writer = std::move(callback);
+}
+
 void Node::later(std::function<void()> callback) {
   impl_->deferred.push_back(std::move(callback));
 }
 
-void Node::serve(std::unique_ptr<LiveParameters> parameters) {
+void Node::serve(std::unique_ptr<LiveParameters> parameters, ParameterSetters setters) {
   // A component may read its parameters twice: the newest ones count.
   if (impl_->parameters != nullptr) return impl_->parameters->replace(std::move(parameters));
-  impl_->parameters = std::make_unique<ParameterService>(*this, std::move(parameters));
+  const auto may_set = [this, setters](const Participant& asker) {
+    return check_setter(impl_->context, asker, setters);
+  };
+  impl_->parameters = std::make_unique<ParameterService>(*this, std::move(parameters), may_set);
 }
 
 void Node::spin() {

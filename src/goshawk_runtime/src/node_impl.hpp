@@ -6,7 +6,9 @@
 #include <fastdds/dds/core/condition/GuardCondition.hpp>
 #include <fastdds/dds/core/condition/WaitSet.hpp>
 #include <fastdds/dds/subscriber/DataReader.hpp>
+#include <fastdds/dds/subscriber/SampleInfo.hpp>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -15,10 +17,14 @@
 #include "goshawk/runtime/node.hpp"
 #include "message_type_impl.hpp"
 #include "parameter_service.hpp"
+#include "writer_guard.hpp"
 
 namespace goshawk::runtime {
 
 using Steady = std::chrono::steady_clock;
+
+// A flood on one topic must not starve timers and the other topics of the node.
+inline constexpr int kMostAtOnce = 64;
 
 struct Subscription {
   dds::DataReader* reader = nullptr;
@@ -27,6 +33,19 @@ struct Subscription {
   void* object = nullptr;  // reused for every message
   Node::RawCallback callback;
   std::uint64_t undecoded = 0;
+
+  // Where one process alone is heard.
+  std::shared_ptr<WriterGuard> guard;  // nullptr: everybody is heard
+  std::unique_ptr<MatchListener> matches;
+  std::function<std::uint8_t(const void*)> part;
+  bool newest_only = false;  // the reader holds more than the subscriber wants
+  bool has_newest = false;
+  void* newest = nullptr;  // was heard, waits for a newer one
+  MessageInfo newest_info;
+  // What a latched writer said while another one was heard: it says it only once.
+  std::size_t most_kept = 0;
+  Participant kept_of{};
+  std::deque<std::pair<void*, MessageInfo>> kept;
 };
 
 struct Timer {
@@ -86,16 +105,17 @@ struct Node::Impl {
   std::vector<std::unique_ptr<Subscription>> subscriptions;
   std::deque<Timer> timers;  // a callback may add one: elements stay where they are
   bool more = false;         // the last pass left messages behind
-  std::vector<std::function<void()>> deferred;  // for the end of the pass
+  std::vector<std::function<void()>> deferred;                 // for the end of the pass
+  std::map<std::string, std::shared_ptr<WriterGuard>> guards;  // by group
+  std::function<void(const Error&)> on_second_writer;
+  Steady::time_point looked_at_kept;
   SimulatedTime time;
   std::unique_ptr<ParameterService> parameters;
 
   std::unique_ptr<Subscription> open(const Node& node, const std::string& topic,
-                                     const MessageType& type, Qos qos, Node::RawCallback callback);
-  void close(Subscription& subscription) {
-    context.subscriber->delete_datareader(subscription.reader);
-    subscription.type.delete_data(subscription.object);
-  }
+                                     const MessageType& type, Qos qos, Node::RawCallback callback,
+                                     Writers writers = {});
+  void close(Subscription& subscription);
   /// [ns] clock of the timers
   std::int64_t timer_now_ns() const {
     return time.on ? time.now_ns
@@ -110,6 +130,14 @@ struct Node::Impl {
   std::int64_t waited_ns(const dds::SampleInfo& info) const;
   /// @return messages taken; limited, so that a flood on one topic does not starve the others
   int take_some(const Node& node, Subscription& subscription);
+  Qos guard(Subscription& subscription, Qos qos, const MessageType& type, Writers writers);
+  /// Hands a decoded message, in subscription.object, to whom it is for, if its writer is heard.
+  void hear(const Node& node, Subscription& subscription, const dds::SampleInfo& info);
+  void deliver_newest(const Node& node, Subscription& subscription);
+  static void keep(Subscription& subscription, const MessageInfo& info);
+  void deliver_kept(const Node& node, Subscription& subscription);
+  /// Delivers what was kept of writers that have become the one that is heard.
+  void look_at_kept(const Node& node);
   /// One pass: some messages of every subscription, then what was deferred.
   /// @return whether there were any
   bool serve(const Node& node);
@@ -124,5 +152,17 @@ struct Node::Impl {
   void call(const Node& node, const std::string& what, const Callback& callback,
             const Arguments&... arguments);
 };
+
+template <typename Callback, typename... Arguments>
+void Node::Impl::call(const Node& node, const std::string& what, const Callback& callback,
+                      const Arguments&... arguments) {
+  try {
+    callback(arguments...);
+  } catch (const std::exception& e) {
+    node.log_->critical("the callback of {} threw: {}. This is a bug; the process ends", what,
+                        e.what());
+    throw;
+  }
+}
 
 }  // namespace goshawk::runtime

@@ -69,15 +69,18 @@ Parameter to_msg(const ParameterDescription& description) {
 
 }  // namespace
 
-ParameterService::ParameterService(Node& node, std::unique_ptr<LiveParameters> parameters)
+ParameterService::ParameterService(Node& node, std::unique_ptr<LiveParameters> parameters,
+                                   MaySet may_set)
     : node_(node),
       parameters_(std::move(parameters)),
+      may_set_(std::move(may_set)),
       answers_(node.advertise<Answer>("/parameter_answer", kQos)) {
-  node.subscribe<Request>("/parameter_request", kQos,
-                          [this](const Request& m, const MessageInfo&) { on_request(m); });
+  node.subscribe<Request>(
+      "/parameter_request", kQos,
+      [this](const Request& m, const MessageInfo& info) { on_request(m, info.writer); });
 }
 
-void ParameterService::on_request(const Request& request) {
+void ParameterService::on_request(const Request& request, const Participant& asker) {
   if (request.node() != node_.full_name() || request.client().size() > kLongestName) return;
   if (const Answer* before = given_before(request)) return publish(*before);
   Answer a;
@@ -85,7 +88,7 @@ void ParameterService::on_request(const Request& request) {
   a.client(request.client());
   a.node(node_.full_name());
   a.verb(request.verb());
-  if (const auto listed = answer(request)) {
+  if (const auto listed = answer(request, asker)) {
     a.code(std::string(to_string(ErrorCode::ok)));
     a.parameters(*listed);
   } else {
@@ -99,9 +102,12 @@ void ParameterService::on_request(const Request& request) {
   if (given_.size() > kMostGiven) given_.pop_front();
 }
 
-Result<ParameterService::Listed> ParameterService::answer(const Request& request) {
+Result<ParameterService::Listed> ParameterService::answer(const Request& request,
+                                                          const Participant& asker) {
   if (auto status = check(request); !status) return status.error();
-  return request.verb() == verb::VERB_GET ? get(request) : set(request);
+  if (request.verb() == verb::VERB_GET) return get(request);
+  if (auto status = may_set_(asker); !status) return status.error();
+  return set(request);
 }
 
 Result<ParameterService::Listed> ParameterService::get(const Request& request) const {

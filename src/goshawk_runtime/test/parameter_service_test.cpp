@@ -187,5 +187,30 @@ TEST_F(ParameterTopics, BytesThatAreNoRequestAreDropped) {
   EXPECT_EQ(ask(request(52, VERB_GET)).parameters()[1].value(), "2");
 }
 
+TEST_F(ParameterTopics, ANodeThatIsFixedTellsButTakesNothing) {
+  RosArgs args;
+  args.overrides = {{"", "set_parameters", "none"}};
+  Node fixed(*server_context_, "fixed", args);
+  fixed.parameters<Config>([](const Config&) { return success(); });
+  std::thread thread([&] { fixed.spin(); });
+  auto get = request(60, VERB_GET);
+  auto set = request(61, VERB_SET, {{"speed_m_s", "9"}});
+  get.node("/fixed");
+  set.node("/fixed");
+  EXPECT_EQ(ask(set).code(), "not_permitted");
+  const auto told = ask(get);
+  EXPECT_EQ(told.code(), "ok");
+  EXPECT_EQ(told.parameters()[1].value(), "2");
+  fixed.stop();
+  thread.join();
+}
+
+TEST_F(ParameterTopics, WhoMaySetIsOneOfThreeWords) {
+  RosArgs args;
+  args.overrides = {{"", "set_parameters", "somebody"}};
+  Node node(*server_context_, "wrong", args);
+  EXPECT_THROW(node.parameters<Config>(), StartupFault);
+}
+
 }  // namespace
 }  // namespace goshawk::runtime

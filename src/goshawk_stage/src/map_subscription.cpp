@@ -10,10 +10,12 @@ MapSubscription::MapSubscription(runtime::Node& node, StageReporter& reporter, C
     : reporter_(reporter), on_map_(std::move(on_map)) {
   node.subscribe<msg::VoxelGrid>(
       "map/voxels", runtime::Qos::latched(),
-      [this](const msg::VoxelGrid& m, const runtime::MessageInfo&) { on_grid(m); });
+      [this](const msg::VoxelGrid& m, const runtime::MessageInfo&) { on_grid(m); },
+      runtime::Writers::one("map"));
   node.subscribe<msg::VoxelGridUpdate>(
       "map/voxels/updates", runtime::Qos::reliable_last(50),
-      [this](const msg::VoxelGridUpdate& m, const runtime::MessageInfo&) { on_update(m); });
+      [this](const msg::VoxelGridUpdate& m, const runtime::MessageInfo&) { on_update(m); },
+      runtime::Writers::one("map"));
 }
 
 void MapSubscription::on_grid(const msg::VoxelGrid& m) {

@@ -25,6 +25,7 @@ StageReporter::StageReporter(runtime::Node& node, StageRole role, std::string im
   report_.stage(conversions::to_msg(role));
   report_.node(node.full_name());
   report_.implementation(std::move(implementation));
+  node.on_second_writer([this](const Error& error) { fault(error); });
   node.every(kRefusalsEvery_s, [this] { tell_of_refusals(); });
 }
 

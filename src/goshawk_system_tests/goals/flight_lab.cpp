@@ -29,14 +29,26 @@ std::shared_ptr<const VoxelGrid> default_map() {
                                                      .inflation_m = growth_m});
 }
 
-BitGrid touching(const VoxelGrid& map) {
-  return inflate(map.raw, kBodyRadius_m, map.geometry.resolution_m).value();
+bool touches(const VoxelGrid& map, const Vec3& position_map) {
+  const Vec3 p = map.geometry.to_grid(position_map);
+  const double reach = kBodyRadius_m / map.geometry.resolution_m;
+  const Vec3 lo = (p.array() - reach).floor(), hi = (p.array() + reach).floor();
+  for (int x = int(lo.x()); x <= int(hi.x()); ++x) {
+    for (int y = int(lo.y()); y <= int(hi.y()); ++y) {
+      for (int z = int(lo.z()); z <= int(hi.z()); ++z) {
+        const Vec3 corner(x, y, z);
+        const Vec3 nearest = p.cwiseMax(corner).cwiseMin(corner + Vec3::Ones());
+        const bool occupied = map.raw.contains({x, y, z}) && map.raw.test({x, y, z});
+        if (occupied && (nearest - p).norm() < reach) return true;
+      }
+    }
+  }
+  return false;
 }
 
 FlightLab::FlightLab(std::shared_ptr<const VoxelGrid> map, std::uint64_t seed,
                      const Delays& delays, const navigator::Config& config)
     : map_(std::move(map)),
-      touching_(touching(*map_)),
       random_(seed),
       delays_(delays),
       search_(path_search::PathSearch::create({}).value()),
@@ -77,6 +89,14 @@ Vec3 FlightLab::random_place() {
   }
 }
 
+Vec3 FlightLab::blocked_place() {
+  const Index3 size = map_->geometry.size;
+  while (true) {
+    const Index3 i{random_.below(size.x), random_.below(size.y), random_.below(size.z)};
+    if (map_->grown.test(i)) return map_->geometry.center(i);
+  }
+}
+
 void FlightLab::step() {
   const std::int64_t now = vehicle_.time_ns();
   while (!events_.empty() && events_.front().time_ns <= now) {
@@ -94,6 +114,7 @@ void FlightLab::step() {
     }
     report_tracker();
     navigator_.on_tracking(tracker_.status().trajectory_id, now);
+    take_orders();
     max_error_m_ = std::max(max_error_m_, tracker_.status().error_m);
   }
   if (now % (20 * kMillisecond) == 0) {
@@ -103,8 +124,7 @@ void FlightLab::step() {
   }
   if (auto status = vehicle_.advance(0.001); !status) throw std::logic_error(status.error().message);
   max_speed_m_s_ = std::max(max_speed_m_s_, speed());
-  const auto voxel = map_->geometry.index_of(position());
-  if (!voxel || touching_.test(*voxel)) ++contacts_;
+  if (touches(*map_, position())) ++contacts_;
 }
 
 void FlightLab::in(double seconds, std::function<void()> act) {
@@ -121,6 +141,7 @@ void FlightLab::take_orders() {
 
 void FlightLab::obey(const PlanRequest& request) {
   ++plans_;
+  newest_request_ = request.id;
   auto planned = plan(request);
   if (meddle) meddle(request, planned.answer);
   const bool late = random_.chance(delays_.late_share);

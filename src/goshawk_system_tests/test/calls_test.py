@@ -12,7 +12,7 @@ ALL_VERBS = ["plan", "fly", "check", "world", "campaign", "launch", "view", "run
              "bench trajectory", "bench updates", "bench tracking", "conform", "record", "replay",
              "topic list", "topic info", "topic echo", "topic hz", "topic delay", "topic bw", "topic pub",
              "node list", "param list", "param get", "param set", "param describe", "param dump",
-             "doctor"]
+             "doctor", "secure init"]
 PLAN_KEYS = {"ok", "code", "message", "request", "stages", "path", "corridor", "trajectory",
              "certificate"}
 

@@ -4,6 +4,7 @@ changes nothing."""
 
 import json
 import math
+import os
 import unittest
 
 import harness
@@ -143,6 +144,22 @@ class LiveParameters(unittest.TestCase):
         self.assert_civil(outcome)
         self.assertEqual(outcome.status, 1, str(outcome))
         self.assertIn("there is no node /no_such_node_at_all", outcome.err)
+
+    def test_5_another_user_changes_nothing(self):
+        if os.geteuid() != 0:
+            self.skipTest("only root can start a process of another user")
+        before = self.param("get", "trajectory_optimizer")
+        # Another user has no folder of its own here, and cannot hold the lock of the domain.
+        outcome = self.sandbox.call("setpriv", "--reuid=65534", "--regid=65534", "--clear-groups",
+                                    GOSHAWK, "param", "set", "trajectory_optimizer",
+                                    "max_tilt_rad", "0.2", "--json", "--timeout", "60", cwd="/",
+                                    timeout_s=40)
+        self.assert_civil(outcome)
+        self.assertNotEqual(outcome.status, 0, str(outcome))
+        answer = json.loads(outcome.out)
+        self.assertEqual(answer["code"], "not_permitted", answer)
+        self.assertIn("belongs to another user", answer["message"])
+        self.assertEqual(self.param("get", "trajectory_optimizer"), before)
 
 
 if __name__ == "__main__":

@@ -95,17 +95,19 @@ class TrackerComponent : public Component {
         states_(node.advertise<msg::TrackingState>("tracking_state", Qos::best_effort())) {
     node.subscribe<msg::CommittedTrajectory>(
         "committed_trajectory", Qos::latched(),
-        [this](const msg::CommittedTrajectory& m, const MessageInfo& info) { on_commit(m, info); });
+        [this](const msg::CommittedTrajectory& m, const MessageInfo& info) { on_commit(m, info); },
+        Writers::one("navigator"));
     node.subscribe<nav_msgs::msg::Odometry>(
         "odom", Qos::best_effort(),
-        [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) { on_odometry(m); });
-    node.subscribe<msg::NavigatorState>("navigator_alive", Qos::best_effort(),
-                                        [this](const msg::NavigatorState& m, const MessageInfo&) {
-                                          tracker_.heard_navigator(node_.monotonic_ns());
-                                          navigator_clock_.hear(
-                                              conversions::to_ns(m.header().stamp()),
-                                              node_.monotonic_ns());
-                                        });
+        [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) { on_odometry(m); },
+        Writers::one("odom"));
+    node.subscribe<msg::NavigatorState>(
+        "navigator_alive", Qos::best_effort(),
+        [this](const msg::NavigatorState& m, const MessageInfo&) {
+          tracker_.heard_navigator(node_.monotonic_ns());
+          navigator_clock_.hear(conversions::to_ns(m.header().stamp()), node_.monotonic_ns());
+        },
+        Writers::one("navigator"));
     node.every(0.05, [this] { watch(); });
     reporter_.ready("tracks with " + config_.controller);
   }

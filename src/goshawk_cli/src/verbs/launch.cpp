@@ -18,6 +18,7 @@ struct LaunchOptions {
   std::string map;
   std::optional<Vec3> start_map;
   std::string log_dir;
+  std::string secure;
   bool list = false;
   bool check = false;
   bool stop_with_parent = false;
@@ -81,6 +82,7 @@ int run_launch(const LaunchOptions& o, const Console& console) {
                         {"map", o.map},
                         {"start", start},
                         {"log_dir", log_dir},
+                        {"secure", o.secure},
                         {"check", o.check},
                         {"stop_with_parent", o.stop_with_parent},
                         {"parent", o.parent},
@@ -106,6 +108,9 @@ void add_launch(Program& program) {
             "[m] where the simulated vehicle begins (default with --map: a free place)");
   verb->add_option("--log-dir", o->log_dir,
                    "folder for the logs (default: a new one in ~/.local/state/goshawk/log)");
+  verb->add_option("--secure", o->secure,
+                   "folder of goshawk secure init: fly with DDS Security, each stage with its own "
+                   "certificate");
   verb->add_flag("--list", o->list, "only print the names of the installed launch files");
   verb->add_flag("--check", o->check, "only check the launch file");
   verb->add_flag("--stop-with-parent", o->stop_with_parent,

@@ -15,6 +15,7 @@ void add_launch(Program& program);
 void add_place(Program& program);
 void add_view(Program& program);
 void add_run(Program& program);
+void add_secure(Program& program);
 void add_bench(Program& program);
 void add_conform(Program& program);
 void add_record(Program& program);

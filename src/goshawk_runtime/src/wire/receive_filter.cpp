@@ -22,7 +22,6 @@
 #include <vector>
 
 #include "datagram_check.hpp"
-#include "sender_table.hpp"
 
 namespace goshawk::runtime::wire {
 namespace {
@@ -120,13 +119,12 @@ class FilteringTransport : public transport::ChainingTransport {
     }
     SenderTable::Prefix sender;
     std::copy_n(datagram.begin() + kPrefixAt, sender.size(), sender.begin());
-    const bool own = senders_.admits(sender, rtps::IPLocator::getPhysicalPort(remote));
+    const bool own = options_.senders->admits(sender, rtps::IPLocator::getPhysicalPort(remote));
     return own ? "" : "it names a participant that sends from another port";
   }
 
   bool loopback_only_;
   FilterOptions options_;
-  SenderTable senders_;
   std::mutex mutex_;
   std::map<rtps::Locator_t, std::unique_ptr<Receiver>> receivers_;
 };

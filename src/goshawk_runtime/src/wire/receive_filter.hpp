@@ -11,6 +11,8 @@
 #include <string>
 #include <string_view>
 
+#include "sender_table.hpp"
+
 namespace goshawk::runtime::wire {
 
 /// Counts the datagrams that the filters of a participant have refused, and logs them: the 1st,
@@ -31,6 +33,7 @@ class Refusals {
 
 struct FilterOptions {
   std::shared_ptr<Refusals> refusals;
+  std::shared_ptr<SenderTable> senders;  // of the transport that listens on 127.0.0.1 alone
   std::function<void(std::span<const std::byte> datagram, bool sent)> tap{};  // may be empty
 };
 

@@ -1,5 +1,9 @@
 #include "sender_table.hpp"
 
+#include <arpa/inet.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
 namespace goshawk::runtime::wire {
 
 bool SenderTable::admits(const Prefix& participant, std::uint16_t port) {
@@ -15,9 +19,28 @@ bool SenderTable::admits(const Prefix& participant, std::uint16_t port) {
   return true;
 }
 
+std::optional<std::uint16_t> SenderTable::port_of(const Prefix& participant) const {
+  const std::lock_guard lock(mutex_);
+  const auto known = port_of_.find(participant);
+  if (known == port_of_.end()) return {};
+  return known->second;
+}
+
 std::size_t SenderTable::size() const {
   const std::lock_guard lock(mutex_);
   return port_of_.size();
+}
+
+bool is_taken(std::uint16_t port) {
+  const int tried = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (tried < 0) return true;  // nobody can tell
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(port);
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  const bool free = bind(tried, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+  close(tried);
+  return !free;
 }
 
 }  // namespace goshawk::runtime::wire

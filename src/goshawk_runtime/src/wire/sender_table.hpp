@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <mutex>
+#include <optional>
 
 namespace goshawk::runtime::wire {
 
@@ -21,6 +22,9 @@ class SenderTable {
   /// @return false if the participant was heard from another port before
   bool admits(const Prefix& participant, std::uint16_t port);
 
+  /// @return the port that it was heard from, or nothing if it was not heard
+  std::optional<std::uint16_t> port_of(const Prefix& participant) const;
+
   std::size_t size() const;  // at most one a port
 
  private:
@@ -28,5 +32,8 @@ class SenderTable {
   std::map<Prefix, std::uint16_t> port_of_;
   std::map<std::uint16_t, Prefix> participant_at_;
 };
+
+/// @return whether a socket of any process has this UDP port of 127.0.0.1
+bool is_taken(std::uint16_t port);
 
 }  // namespace goshawk::runtime::wire

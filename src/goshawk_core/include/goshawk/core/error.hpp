@@ -43,6 +43,7 @@ enum class ErrorCode {
   process_stalled,     // this process did not run for a while: stopped, suspended, or starved
   clock_set,           // a clock that stamps come from was set forward or back
   second_writer,       // a second program writes what one alone may write
+  not_permitted,       // the asker may not do that here
 };
 
 std::string_view to_string(ErrorCode code);

@@ -14,6 +14,7 @@
 #include "goshawk/runtime/parameters.hpp"
 #include "goshawk/runtime/qos.hpp"
 #include "goshawk/runtime/ros_args.hpp"
+#include "goshawk/runtime/writers.hpp"
 
 namespace spdlog {
 class logger;
@@ -37,6 +38,7 @@ struct MessageInfo {
   std::int64_t received_ns = 0;  // [ns] clock of the node, when its thread took the message
   std::int64_t waited_ns = 0;    // [ns] before that, since it had arrived; 0 in simulated time
   std::int64_t sent_ns = 0;      // [ns] the sender's system clock, when it was published
+  Participant writer{};          // who published it
 };
 
 namespace detail {
@@ -98,15 +100,16 @@ class Node {
   Config parameters(std::function<Status(const Config&)> reconfigure = {}) {
     auto source = args_.parameters_of(name_);
     if (!source) throw StartupFault(source.error());
-    TimeParameters time;
-    auto config = read_parameters<Config>(*source, name_, &time);
+    NodeParameters common;
+    auto config = read_parameters<Config>(*source, name_, &common);
     if (!config) throw StartupFault(config.error());
-    if (time.lock_step) {
+    if (common.lock_step) {
       run_in_lock_step();
-    } else if (time.use_sim_time) {
+    } else if (common.use_sim_time) {
       use_simulated_time();
     }
-    serve(std::make_unique<LiveConfig<Config>>(*config, name_, std::move(reconfigure)));
+    serve(std::make_unique<LiveConfig<Config>>(*config, name_, std::move(reconfigure)),
+          common.set_parameters);
     return *std::move(config);
   }
 
@@ -125,19 +128,25 @@ class Node {
 
   template <typename Message>
   void subscribe(std::string_view topic, Qos qos,
-                 std::function<void(const Message&, const MessageInfo&)> callback) {
-    subscribe_raw(topic, message_type<Message>(), qos,
-                  [callback = std::move(callback)](const void* message, const MessageInfo& info) {
-                    callback(*static_cast<const Message*>(message), info);
-                  });
+                 std::function<void(const Message&, const MessageInfo&)> callback,
+                 Writers writers = {}) {
+    subscribe_raw(
+        topic, message_type<Message>(), qos,
+        [callback = std::move(callback)](const void* message, const MessageInfo& info) {
+          callback(*static_cast<const Message*>(message), info);
+        },
+        std::move(writers));
   }
 
   using RawCallback = std::function<void(const void* message, const MessageInfo& info)>;
   RawPublisher advertise_raw(std::string_view topic, const MessageType& type, Qos qos) {
     return RawPublisher(make_writer(topic, type, qos));
   }
-  void subscribe_raw(std::string_view topic, const MessageType& type, Qos qos,
-                     RawCallback callback);
+  void subscribe_raw(std::string_view topic, const MessageType& type, Qos qos, RawCallback callback,
+                     Writers writers = {});
+
+  /// Who is told of a process that is not heard, with second_writer; until then the log.
+  void on_second_writer(std::function<void(const Error&)> callback);
 
   /// Calls back every period_s from now on, by the machine's steady clock or by simulated time; a
   /// call that comes late is not made up for.
@@ -158,7 +167,7 @@ class Node {
  private:
   std::shared_ptr<detail::Writer> make_writer(std::string_view topic, const MessageType& type,
                                               Qos qos);
-  void serve(std::unique_ptr<LiveParameters> parameters);
+  void serve(std::unique_ptr<LiveParameters> parameters, ParameterSetters setters);
   void take_turn(const void* message);
   struct Impl;
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <map>
 #include <string>
@@ -9,6 +10,7 @@
 
 #include "goshawk/core/parameter.hpp"
 #include "goshawk/core/result.hpp"
+#include "goshawk/core/words.hpp"
 
 namespace goshawk::runtime {
 
@@ -165,26 +167,38 @@ constexpr const char* type_name() {
 
 }  // namespace detail
 
+/// Who may set the parameters of a running node (docs/security.md).
+enum class ParameterSetters { user, any, none };
+constexpr auto words_of(ParameterSetters) {
+  return std::to_array<Named<ParameterSetters>>({
+      {ParameterSetters::user, "user"},  // processes of this user, or of root, on this machine
+      {ParameterSetters::any, "any"},
+      {ParameterSetters::none, "none"},
+  });
+}
+
 /// Parameters that every node has besides its own.
-struct TimeParameters {
+struct NodeParameters {
   bool use_sim_time = false;  // now and timers follow /clock, as in ROS
   bool lock_step = false;     // the node runs in turns: its plant names it in lock_step_nodes
+  ParameterSetters set_parameters = ParameterSetters::user;
 };
 
 /// Fills a config struct, strictly: an unknown name, a wrong type or a value out of range is a
 /// fault, and the error (invalid_parameter) lists all of them, one a line.
-/// @param time takes the parameters that every node has; may be null
+/// @param common takes the parameters that every node has; may be null
 /// @param config values of the parameters that the source does not set
 template <typename Config>
 Result<Config> read_parameters(const ParameterSource& source, std::string_view node_name,
-                               TimeParameters* time = nullptr, Config config = {},
+                               NodeParameters* common = nullptr, Config config = {},
                                detail::Changeable changeable = detail::Changeable::at_start) {
   detail::Reader reader(source, changeable);
   describe(config, reader);
-  TimeParameters ignored;
-  TimeParameters& t = time != nullptr ? *time : ignored;
-  reader("use_sim_time", t.use_sim_time, "", "", Anything{});
-  reader("lock_step", t.lock_step, "", "", Anything{});
+  NodeParameters ignored;
+  NodeParameters& c = common != nullptr ? *common : ignored;
+  reader("use_sim_time", c.use_sim_time, "", "", Anything{});
+  reader("lock_step", c.lock_step, "", "", Anything{});
+  reader("set_parameters", c.set_parameters, "", "", Anything{});
   if (auto status = reader.finish(node_name); !status) return status.error();
   return config;
 }

@@ -83,15 +83,18 @@ class Intake {
   Intake(runtime::Node& node, StageReporter& reporter, std::string_view topic, Handler handler)
       : node_(node), reporter_(reporter), handler_(std::move(handler)) {
     if constexpr (!kIsRequest) {
-      node.subscribe<Request>("plan_request", runtime::Qos::reliable_last(),
-                              [this](const Request& m, const auto& info) { note(m, info); });
+      node.subscribe<Request>(
+          "plan_request", runtime::Qos::reliable_last(),
+          [this](const Request& m, const auto& info) { note(m, info); },
+          runtime::Writers::one("plan_request"));
     }
-    node.subscribe<Message>(topic, runtime::Qos::reliable_last(),
-                            [this](const Message& m, const runtime::MessageInfo& info) {
-                              waiting_.push_back({m, wire_time_ns(m.header(), info),
-                                                  note(request_of(m), info)});
-                              if (waiting_.size() == 1) node_.later([this] { serve(); });
-                            });
+    node.subscribe<Message>(
+        topic, runtime::Qos::reliable_last(),
+        [this](const Message& m, const runtime::MessageInfo& info) {
+          waiting_.push_back({m, wire_time_ns(m.header(), info), note(request_of(m), info)});
+          if (waiting_.size() == 1) node_.later([this] { serve(); });
+        },
+        runtime::Writers::one(std::string(topic)));
   }
   Intake(const Intake&) = delete;
   Intake& operator=(const Intake&) = delete;

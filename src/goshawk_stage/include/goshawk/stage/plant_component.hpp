@@ -39,7 +39,8 @@ class PlantComponent : public runtime::Component {
         "command", runtime::Qos::best_effort(),
         [this](const goshawk_msgs::msg::AttitudeSetpoint& m, const runtime::MessageInfo&) {
           on_command(m);
-        });
+        },
+        runtime::Writers::one("command"));
     const double period_s = 1.0 / config_.plant.rate_hz;
     const auto followers = runtime::split_names(config_.plant.lock_step_nodes);
     if (!followers.empty()) {

@@ -22,7 +22,10 @@ class StageReporter {
  public:
   using Counters = std::initializer_list<std::pair<const char*, double>>;
 
+  /// Also reports whom the node does not hear (runtime::Writers).
   StageReporter(runtime::Node& node, StageRole role, std::string implementation);
+  StageReporter(const StageReporter&) = delete;
+  StageReporter& operator=(const StageReporter&) = delete;
 
   void set_implementation(std::string implementation);
 

@@ -1,0 +1,62 @@
+"""Who reads and writes which topics: the one table from which permissions are made.
+
+A right is a topic in the vehicle's namespace, or one of the whole domain if it begins with '/'.
+`SecuredStages` compares this table with what the stages open.
+"""
+
+EVERY_NODE = {"reads": ["/parameter_request"], "writes": ["/parameter_answer"]}
+MAP = ["map/voxels", "map/voxels/updates"]
+ALL = ["/*"]
+
+# name: what it reads and writes besides EVERY_NODE (stages also write stage_report)
+STAGES = {
+    "map_server": {"reads": ["cloud_in", "odom"], "writes": [*MAP, "octomap_binary"]},
+    "path_search": {"reads": [*MAP, "plan_request"], "writes": ["path"]},
+    "corridor_builder": {"reads": [*MAP, "plan_request", "path"], "writes": ["corridor"]},
+    "trajectory_optimizer": {"reads": ["plan_request", "corridor"], "writes": ["trajectory"]},
+    "navigator": {"reads": [*MAP, "goal_pose", "odom", "trajectory", "stage_report",
+                            "tracking_state"],
+                  "writes": ["plan_request", "committed_trajectory", "navigator_state",
+                             "navigator_alive"]},
+    "tracker": {"reads": [*MAP, "committed_trajectory", "odom", "navigator_alive"],
+                "writes": ["command", "tracking_state"]},
+    "vehicle": {"reads": [*MAP, "command"],
+                "writes": ["odom", "odom_true", "vehicle_status", "/tf"]},
+    "flight_check": {"reads": ["octomap_binary", "committed_trajectory", "odom", "odom_true",
+                               "vehicle_status"], "writes": []},
+    "sensors": {"reads": ["odom", "odom_true"],
+                "writes": ["points", "cloud_in", "depth/image_rect_raw", "depth/camera_info",
+                           "/tf_static"]},
+    "visualizer": {"reads": ["octomap_binary", "path", "committed_trajectory", "odom"],
+                   "writes": ["view/obstacles", "view/plan", "view/flown", "path_line", "markers"]},
+}
+# They are no stages: they report nothing.
+PEOPLE = {
+    "viewer": {"reads": ALL, "writes": ["goal_pose"]},
+    "recorder": {"reads": ALL, "writes": []},
+    "operator": {"reads": ALL, "writes": ["goal_pose", "/parameter_request"]},
+}
+COMPONENTS = {"simulator": "vehicle", "mujoco": "vehicle", "viewer_bridge": "viewer",
+              "baseline_optimizer": "trajectory_optimizer"}
+
+
+def role_of(component):
+    """The name under which a component of a launch file is certified."""
+    return COMPONENTS.get(component, component)
+
+
+def roles():
+    """name: (topics that it reads, topics that it writes)"""
+    table = {}
+    for name, own in STAGES.items():
+        table[name] = (own["reads"] + EVERY_NODE["reads"],
+                       own["writes"] + ["stage_report"] + EVERY_NODE["writes"])
+    for name, own in PEOPLE.items():
+        writes = own["writes"] + (EVERY_NODE["writes"] if name == "viewer" else [])
+        table[name] = (own["reads"], writes + (["stage_report"] if name == "viewer" else []))
+    return table
+
+
+def wire_name(topic, namespace):
+    """As permissions name it: "map/voxels" in /uav1 is rt/uav1/map/voxels."""
+    return "rt" + (topic if topic.startswith("/") else f"{namespace.rstrip('/')}/{topic}")

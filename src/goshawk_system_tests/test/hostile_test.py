@@ -1,0 +1,86 @@
+#!/usr/bin/python3
+"""A member of the domain that speaks as a stage, in flight: every row of docs/security.md."""
+
+import json
+import signal
+
+import harness
+import second_opinion
+from harness import PREFIX, node_of, note, until
+from stack import StackTest, position_of
+
+PLACES = [(3.0, 8.0, 2.0), (3.0, 0.0, 1.0)]
+# lie: options, and a stage that must refuse it
+LIES = {
+    "commit": ([], "tracker"),
+    "commit_of_no_map": ([], "tracker"),
+    "trajectory": ([], "navigator"),
+    "bad_trajectory": ([], "navigator"),
+    "corridor": ([], "trajectory_optimizer"),
+    "request": ([], "path_search"),
+    "report": ([], "navigator"),
+    "map": ([], "path_search"),
+    "update": ([], "path_search"),
+    "blocked_map": ([], "path_search"),
+    "odom": ([], "tracker"),
+    "command at 500 Hz": (["--rate", 500], "simulator"),
+    "command at 5,000 Hz": (["--rate", 5000], "simulator"),
+}
+
+
+class HostileParticipant(StackTest):
+    # With a sensor that is not perfect the simulator tells the truth on a topic of its own: what a
+    # lie about odometry does is judged by that one.
+    ros_args = ["-p", "simulator:position_noise_m:=0.001", "-p", "navigator:set_parameters:=none"]
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.truth = cls.stack.echo("odom_true", "--no-arr")
+
+    def refused_by(self, stage, since):
+        return [r for r in self.stack.reports.lines()[since:]
+                if r["code"] == "second_writer" and node_of(r) == stage]
+
+    def fly(self, place):
+        state = self.stack.fly_to(place)
+        self.assertIsNotNone(state, self.stack.launch.tails())
+        self.assertEqual(state["state"], "arrived", state)
+
+    def test_1_lies_are_refused_and_every_goal_is_reached(self):
+        pids = self.stack.launch.pids()
+        for name, (options, stage) in LIES.items():
+            with self.subTest(name):
+                since = len(self.stack.reports.lines())
+                to = ",".join(str(x) for x in PLACES[0])
+                impostor = self.sandbox.start(PREFIX / "bin" / "goshawk_impostor", name.split()[0],
+                                              "--to", to, *options)
+                self.assertTrue(until(lambda i=impostor: i.lines(), 10.0), str(impostor.outcome()))
+                for place in PLACES:
+                    self.fly(place)
+                self.assertTrue(until(lambda: self.refused_by(stage, since), 10.0),
+                                self.stack.launch.tails())
+                self.assertEqual(impostor.stop(signal.SIGTERM)[0], 0, str(impostor.outcome()))
+                note(f"{name}: {impostor.lines()[-1]['sent']} messages")
+                self.assertGreater(impostor.lines()[-1]["sent"], 0)
+        self.assertEqual(self.stack.launch.pids(), pids, self.stack.launch.tails())
+
+    def test_2_parameters_that_the_launch_has_fixed_stay(self):
+        outcome = self.sandbox.goshawk("param", "set", "navigator", "v_max_m_s", "9", "--json",
+                                       "--timeout", "60", timeout_s=40)
+        self.assertNotEqual(outcome.status, 0, str(outcome))
+        self.assertEqual(json.loads(outcome.out)["code"], "not_permitted", str(outcome))
+
+    def test_3_a_goal_after_the_liars_have_left_is_reached(self):
+        for place in PLACES:
+            self.fly(place)
+
+    def test_4_nothing_was_touched(self):
+        track = [position_of(m) for m in self.truth.lines()]
+        clearance = second_opinion.smallest_clearance(self.stack.world, track, 0.02)
+        note(f"least clearance {clearance:.3f} m over {len(track)} states")
+        self.assertGreater(clearance, harness.BODY_RADIUS_M)
+
+
+if __name__ == "__main__":
+    harness.main()

@@ -1,0 +1,166 @@
+#!/usr/bin/python3
+"""DDS Security: who may read and write what, by `goshawk secure init` and `goshawk launch --secure`."""
+
+import json
+import os
+import signal
+import sys
+
+import harness
+import second_opinion
+from harness import GOSHAWK, SOURCE, Sandbox, SystemTest, note, until
+from stack import Stack, StackTest, goal_message
+
+sys.path.insert(0, str(SOURCE / "src" / "goshawk_bringup" / "scripts"))
+import topic_rights  # noqa: E402
+
+PLACES = [(3.0, 8.0, 2.0), (3.0, 0.0, 1.0)]
+PROFILE = "FASTRTPS_DEFAULT_PROFILES_FILE"
+NODES = {**{name: name for name in topic_rights.STAGES if name not in ("vehicle", "visualizer")},
+         "simulator": "vehicle"}
+# Opened only if they are needed: the map before a landing, the truth beside a sensor's error.
+LATER = {"tracker": set(topic_rights.MAP), "vehicle": {*topic_rights.MAP, "odom_true"}}
+
+
+class SecuredStages(StackTest):
+    """The table of rights against a stack that has none."""
+
+    def ends(self):
+        """node: (topics that it reads, topics that it writes), as discovery tells"""
+        listed = json.loads(self.sandbox.goshawk("topic", "list", "--json").out)
+        asked = {t["name"]: self.sandbox.start(GOSHAWK, "topic", "info", t["name"], "--json")
+                 for t in listed["topics"]}
+        found = {}
+        for topic, process in asked.items():
+            self.assertEqual(process.wait(60.0), 0, str(process.outcome()))
+            info = json.loads(process.out())
+            for kind, at in (("subscribers", 0), ("publishers", 1)):
+                for end in info[kind]:
+                    for node in end["nodes"]:
+                        found.setdefault(node.lstrip("/"), (set(), set()))[at].add(topic)
+        return found
+
+    def test_each_stage_opens_what_it_has_a_right_to_and_no_more(self):
+        table = topic_rights.roles()
+        def differences():
+            ends = self.ends()
+            wrong = {}
+            for node, role in NODES.items():
+                for at, word in enumerate(("reads", "writes")):
+                    right = {topic_rights.wire_name(t, "/")[2:] for t in table[role][at]}
+                    later = {topic_rights.wire_name(t, "/")[2:] for t in LATER.get(role, ())}
+                    opened = ends.get(node, (set(), set()))[at]
+                    if opened - right or right - opened - later:
+                        wrong[f"{node} {word}"] = (sorted(opened - right), sorted(right - opened))
+            return wrong
+        # On a busy machine discovery takes longer than a call waits.
+        until(lambda: not differences(), 20.0, 1.0)
+        self.assertEqual(differences(), {}, "(opened without a right, right that is not used)")
+
+
+class SecuredFlight(SystemTest):
+    @classmethod
+    def setUpClass(cls):
+        cls.sandbox = Sandbox()
+        try:
+            cls.keys, cls.others = (cls.make_keys(name) for name in ("keys", "others"))
+            # What the test itself says and reads is the operator's.
+            cls.sandbox.env[PROFILE] = str(cls.keys / "operator" / "profile.xml")
+            cls.stack = Stack(cls.sandbox, options=["--secure", cls.keys])
+            cls.stack.wait_ready()
+        except BaseException:
+            cls.sandbox.close()
+            raise
+
+    @classmethod
+    def tearDownClass(cls):
+        left = cls.sandbox.close()
+        if left:
+            raise AssertionError(f"processes outlived the test: {left}")
+
+    def setUp(self):
+        pass  # one stack for all
+
+    @classmethod
+    def make_keys(cls, name):
+        folder = cls.sandbox.folder / name
+        made = cls.sandbox.goshawk("secure", "init", folder, "--json")
+        if made.status != 0:
+            raise AssertionError(str(made))
+        return folder
+
+    def fly(self):
+        for place in PLACES:
+            state = self.stack.fly_to(place)
+            self.assertIsNotNone(state, self.stack.launch.tails())
+            self.assertEqual(state["state"], "arrived", state)
+
+    def test_1_a_secured_flight_reaches_its_goals(self):
+        self.fly()
+
+    def outsiders(self):
+        yield "without a certificate", {PROFILE: ""}
+        yield "of a foreign authority", {PROFILE: str(self.others / "operator" / "profile.xml")}
+
+    def call_as(self, env, *arguments):
+        env = {**self.sandbox.env, **env}
+        if not env[PROFILE]:
+            del env[PROFILE]
+        before, self.sandbox.env = self.sandbox.env, env
+        try:
+            return self.sandbox.goshawk(*arguments, timeout_s=40)
+        finally:
+            type(self).sandbox.env = before
+
+    def test_2_outsiders_see_and_deliver_nothing(self):
+        for who, env in self.outsiders():
+            with self.subTest(who):
+                listed = self.call_as(env, "topic", "list", "--json", "--timeout", "5")
+                self.assert_civil(listed)
+                self.assertNotIn("committed_trajectory", listed.out)
+                told = self.call_as(env, "topic", "pub", "goal_pose",
+                                    "geometry_msgs/msg/PoseStamped",
+                                    json.dumps(goal_message(PLACES[0])), "--once", "--timeout", "5")
+                self.assertEqual(told.status, 1, str(told))
+                self.assertIn("nobody reads /goal_pose", told.err)
+
+    def test_3_a_member_writes_only_what_it_may(self):
+        commit = ("committed_trajectory", "goshawk_msgs/msg/CommittedTrajectory")
+        for role, (topic, kind) in (("viewer", commit), ("recorder", commit), ("operator", commit),
+                                    ("path_search", ("command", "goshawk_msgs/msg/AttitudeSetpoint")),
+                                    ("recorder", ("goal_pose", "geometry_msgs/msg/PoseStamped"))):
+            with self.subTest(f"{role} {topic}"):
+                told = self.call_as({PROFILE: str(self.keys / role / "profile.xml")}, "topic",
+                                    "pub", topic, kind, "{}", "--once", "--timeout", "5")
+                self.assert_civil(told)
+                self.assertNotEqual(told.status, 0, str(told))
+                self.assertIn("permissions", told.err)
+
+    def test_4_a_member_reads_only_what_it_may(self):
+        told = self.call_as({PROFILE: str(self.keys / "path_search" / "profile.xml")}, "topic",
+                            "echo", "committed_trajectory", "--once", "--timeout", "5")
+        self.assert_civil(told)
+        self.assertNotEqual(told.status, 0, str(told))
+
+    def test_5_the_operator_sets_parameters(self):
+        told = self.sandbox.goshawk("param", "set", "navigator", "v_max_m_s", "1.5", "--json",
+                                    "--timeout", "60", timeout_s=40)
+        self.assertEqual(told.status, 0, str(told))
+
+    def test_6_a_stage_that_was_killed_is_heard_again(self):
+        for stage in ("corridor_builder", "tracker"):
+            before = self.stack.launch.pids()[stage]
+            os.kill(before, signal.SIGKILL)
+            log = self.stack.launch.logs / f"{stage}.log"
+            self.assertTrue(until(
+                lambda f=log: f.read_text(errors="replace").count("ready: ") > 1, 30.0))
+            self.fly()
+
+    def test_7_nothing_was_touched(self):
+        clearance = second_opinion.smallest_clearance(self.stack.world, self.stack.track(), 0.02)
+        note(f"least clearance {clearance:.3f} m")
+        self.assertGreater(clearance, harness.BODY_RADIUS_M)
+
+
+if __name__ == "__main__":
+    harness.main()
