@@ -26,7 +26,7 @@ def known_names():
     """Suite.Test of every GoogleTest, Class and Class.test_method of every Python test, names of
     CTest, and `campaign --faults KIND`."""
     names = set()
-    for path in ROOT.glob("src/*/test/**/*.cpp"):
+    for path in ROOT.glob("src/*/**/*_test.cpp"):
         for suite, test in re.findall(r"\bTEST(?:_[FP])?\(\s*(\w+),\s*(\w+)\)", path.read_text()):
             names |= {suite, f"{suite}.{test}"}
     for path in [*ROOT.glob("src/*/test/*_test.py"), *ROOT.glob("tools/tests/*_test.py")]:

@@ -4,6 +4,7 @@
 #include <ctime>
 #include <fstream>
 #include <memory>
+#include <numeric>
 #include <stdexcept>
 
 #include "common/measure.hpp"
@@ -101,6 +102,11 @@ void measure_query(const Case& c, const World& world, const World::Query& q,
   }
 }
 
+double share_of(std::vector<double> values, double share) {
+  std::ranges::sort(values);
+  return at_share(values, share);
+}
+
 Json row_of(const Case& c, std::size_t k, const Samples& s) {
   const bool plain = c.planners[k] == kPlain;
   Json row{{"table", c.table},
@@ -112,6 +118,8 @@ Json row_of(const Case& c, std::size_t k, const Samples& s) {
            {"maps", c.worlds.size()},
            {"queries", s.us.size()},
            {"median_us", median(s.us)},
+           {"p90_us", share_of(s.us, 0.9)},
+           {"sum_us", std::accumulate(s.us.begin(), s.us.end(), 0.0)},
            {"expanded", plain ? Json(nullptr) : Json(median(s.expanded))},
            {"length_m", s.length_voxels * c.resolution_m / double(s.us.size())},
            {"setup_us", plain ? Json(nullptr) : Json(median(s.setup_us))},

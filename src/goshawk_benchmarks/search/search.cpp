@@ -1,7 +1,9 @@
 // goshawk bench search: the thesis' tables 1 and 2, structured, big and real maps, growth with the
-// size of the map, sampling planners, pruning, and what a map costs to take over.
+// size of the map, sampling planners, pruning, what a map costs to take over; and the hard cases:
+// long detours, no way, random queries in a big map, the first query, replanning.
 #include <cmath>
 
+#include "goshawk/core/random.hpp"
 #include "search/cases.hpp"
 
 namespace goshawk::bench {
@@ -16,6 +18,24 @@ std::vector<World> seeds(int count, Seeded make, Index3 size, double ratio) {
   std::vector<World> all;
   for (int seed = 1; seed <= count; ++seed) all.push_back(make(size, ratio, std::uint64_t(seed)));
   return all;
+}
+
+// Between free voxels anywhere; goals that cannot be reached are left out later.
+World with_random_queries(World world, int count) {
+  Random random(7);
+  const Index3 size = world.blocked.size();
+  const auto any = [&] {
+    Index3 at;
+    do at = {random.below(size.x), random.below(size.y), random.below(size.z)};
+    while (world.blocked.get(at));
+    return at;
+  };
+  world.queries.clear();
+  for (int k = 0; k < count; ++k) {
+    const Index3 start = any();
+    world.queries.push_back({start, any()});
+  }
+  return world;
 }
 
 void thesis_table_1(Report& report, int maps) {
@@ -159,6 +179,45 @@ void big(Report& report, bool quick) {
   }
 }
 
+// Where a search has most to do, or least to go by.
+void hard(Report& report, bool quick) {
+  const Index3 size{500, 500, 50};
+  for (const std::string& rule : kRules) {
+    measure(report, {.table = "hard",
+                     .map = "warframe Complex, longest detours",
+                     .rule = rule,
+                     .resolution_m = 1.0,
+                     .worlds = {worlds::warframe_hard("Complex", quick ? 20 : 100)},
+                     .planners = {"jastar", "astar"},
+                     .seconds_a_query = quick ? 0.02 : 0.05});
+    Case no_way{.table = "no way",
+                .map = "boxes 100x100x10 m, a wall",
+                .ratio = 0.2,
+                .rule = rule,
+                .worlds = {worlds::walled(worlds::boxes(size, 0.2, 1))}};
+    measure_no_way(report, no_way);
+    if (!quick) {
+      no_way.map = "boxes 200x200x20 m, a wall";
+      no_way.worlds = {worlds::walled(worlds::boxes({1000, 1000, 100}, 0.2, 1))};
+      measure_no_way(report, no_way);
+    }
+    Case any{.table = "random queries",
+             .map = "boxes 100x100x10 m",
+             .ratio = 0.2,
+             .rule = rule,
+             .worlds = {with_random_queries(worlds::boxes(size, 0.2, 1), quick ? 10 : 40)},
+             .planners = {"jastar"},
+             .seconds_a_query = quick ? 0.02 : 0.1};
+    measure(report, any);
+    any.table = "first query";
+    any.worlds.front().queries.resize(quick ? 3 : 10);
+    measure_first(report, any);
+    any.table = "replanning";
+    any.worlds = seeds(quick ? 1 : 3, worlds::boxes, size, 0.2);
+    for (const bool boxes : {true, false}) measure_replanning(report, any, boxes);
+  }
+}
+
 /// Slope of log time over log voxels, least squares.
 double exponent(const nlohmann::ordered_json& rows, const std::string& map,
                 const std::string& planner) {
@@ -268,6 +327,7 @@ void run(Report& report) {
   structured(report, quick);
   real(report, quick);
   big(report, quick);
+  hard(report, quick);
   growth(report, quick);
   others(report, quick);
   plots_of_classes(report);

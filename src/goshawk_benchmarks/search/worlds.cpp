@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <functional>
 #include <stdexcept>
 
 #include "goshawk/core/inflation.hpp"
@@ -9,6 +10,7 @@
 #include "goshawk/map_server/map_file.hpp"
 #include "goshawk/map_server/voxel_map.hpp"
 #include "goshawk/path_search/grid_search.hpp"
+#include "goshawk/path_search/move_cost.hpp"
 #include "goshawk/worlds/world.hpp"
 #include "search/warframe_files.hpp"
 
@@ -165,6 +167,30 @@ World warframe(const std::string& name, std::size_t problems) {
   for (std::size_t k = 0; k < all->size(); k += stride) {
     world.queries.push_back({(*all)[k].start, (*all)[k].goal});
   }
+  return world;
+}
+
+World warframe_hard(const std::string& name, std::size_t problems) {
+  const std::string path = data_folder() + "/warframe/" + name + ".3dmap";
+  World world{"warframe " + name + ", hard", {}, {}};
+  auto map = read_voxel_map(path);
+  auto all = read_scenario(path + ".3dscen");
+  if (!map || !all) return world;
+  world.blocked = *std::move(map);
+  const auto detour = [](const Problem& p) {
+    const auto empty = goshawk::path_search::OctileHeuristic{}(p.start, p.goal);
+    return p.length_voxels - double(empty) / double(goshawk::path_search::kUnit);
+  };
+  std::ranges::stable_sort(*all, std::greater<>{}, detour);
+  for (std::size_t k = 0; k < std::min(problems, all->size()); ++k) {
+    world.queries.push_back({(*all)[k].start, (*all)[k].goal});
+  }
+  return world;
+}
+
+World walled(World world) {
+  const Index3 size = world.blocked.size();
+  fill(world.blocked, {size.x / 2, 0, 0}, {size.x / 2 + 2, size.y, size.z}, true);
   return world;
 }
 

@@ -39,6 +39,12 @@ World forest(Index3 size, double ratio, std::uint64_t seed);
 /// queries where the files of that name are missing
 World warframe(const std::string& name, std::size_t problems);
 
+/// A Warframe map with those of its problems whose paths are longest beside the empty grid's.
+World warframe_hard(const std::string& name, std::size_t problems);
+
+/// The same map with a wall of two voxels across the middle of x, from end to end.
+World walled(World world);
+
 /// An OctoMap file of the data folder, unknown space blocked, grown by 0.2 m, with random pairs of
 /// voxels that are joined. @return a world without queries where the file is missing
 World octomap(const std::string& name, std::size_t queries);

@@ -196,18 +196,23 @@ class Feeder {
 
   Status send(Input input) {
     const std::int64_t now_ns = node_.now_ns();
+    if (vehicle_) publish_vehicle(now_ns);  // a cloud is placed by the pose at its stamp
     open_[renew(input, ++number_, now_ns)] = now_ns;
     ++samples_.sent;
     return inputs_.publish(input);
   }
 
-  // Best effort: some of them come. Clouds are placed by it.
-  void place_vehicle() {
+  void publish_vehicle(std::int64_t stamp_ns) {
     nav_msgs::msg::Odometry m;
     conversions::fill_msg(RigidBodyState{}, m);
+    m.header(conversions::make_header(stamp_ns));
+    (void)vehicle_->publish(m);
+  }
+
+  // Best effort: some of them come.
+  void place_vehicle() {
     for (int k = 0; k < 10; ++k) {
-      m.header(conversions::make_header(node_.now_ns()));
-      (void)vehicle_->publish(m);
+      publish_vehicle(node_.now_ns());
       wait(0.02, [] { return false; });
     }
   }

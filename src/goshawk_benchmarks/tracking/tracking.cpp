@@ -31,6 +31,7 @@ constexpr std::int64_t kStart_ns = 1'000'000'000;
 
 struct Mission {
   CommittedTrajectory committed;
+  std::shared_ptr<const VoxelGrid> grid;
   std::shared_ptr<flight_check::FlightCheck> judge;
 };
 
@@ -69,7 +70,7 @@ Result<Mission> plan(double density, std::uint64_t seed) {
   auto committed = CommittedTrajectory::make(
       {.id = seed, .nominal = std::move(solution->certified), .start_time_ns = kStart_ns});
   if (!committed) return committed.error();
-  return Mission{*std::move(committed),
+  return Mission{*std::move(committed), grid,
                  std::make_shared<flight_check::FlightCheck>(*std::move(judge))};
 }
 
@@ -114,6 +115,7 @@ Flown fly(const Mission& mission, const std::string& controller, simulator::Conf
   tracker::Config config;
   config.controller = controller;
   auto tracker = tracker::Tracker::create(config).value();
+  tracker.set_map(mission.grid, vehicle.time_ns());
   Flown flown;
   if (!vehicle.reset(mission.committed.nominal().start().position, 0.0)) return flown;
   const Trajectory& trajectory = mission.committed.flown();

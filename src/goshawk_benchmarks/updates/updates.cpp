@@ -12,6 +12,7 @@
 #include "goshawk/core/random.hpp"
 #include "goshawk/corridor_builder/corridor_builder.hpp"
 #include "goshawk/path_search/path_search.hpp"
+#include "goshawk/tracker/tracker.hpp"
 
 namespace goshawk::bench {
 namespace {
@@ -74,11 +75,36 @@ GridUpdate make_update(const VoxelGrid& map, std::span<const Index3> voxels) {
 struct Follower {
   std::string name;
   std::function<void(const Map&)> follow;
+  std::function<void()> prepare = [] {};  // before each update, not timed
   std::vector<double> us = {};
 };
 
 path_search::PathSearch search_of(const path_search::Config& config) {
   return std::move(path_search::PathSearch::create(config)).value();
+}
+
+/// In flight, at the beginning of 48 m beside all boxes in 48 pieces.
+tracker::Tracker flying_tracker() {
+  Trajectory trajectory;
+  const auto knot = [](int k) {
+    return FlatState{.position = Vec3(1.55, 1.05 + k, 5.05),
+                     .velocity = Vec3(0.0, k == 0 || k == 48 ? 0.0 : 1.0, 0.0)};
+  };
+  for (int k = 0; k < 48; ++k) {
+    trajectory.pieces.push_back(BezierPiece::between(knot(k), knot(k + 1), 1.0));
+  }
+  auto certified = certify(std::move(trajectory), {Polytope::box(Vec3::Zero(), Vec3::Constant(50))},
+                           {.v_max_m_s = 5.0, .a_max_m_s2 = 9.0}, knot(0), knot(48));
+  auto committed = CommittedTrajectory::make({.id = 1, .nominal = std::move(certified).value()});
+  tracker::Config config;
+  config.require_map = false;
+  auto tracker = tracker::Tracker::create(config).value();
+  const RigidBodyState vehicle{.position_map = knot(0).position};
+  if (!tracker.step(vehicle, 0) || !tracker.accept(std::move(committed).value(), 0) ||
+      !tracker.step(vehicle, 4'000'000)) {
+    throw std::logic_error("the benchmark's trajectory was refused");
+  }
+  return tracker;
 }
 
 /// Turns of all followers; what a turn takes is the processor time of this thread.
@@ -96,6 +122,7 @@ class Run {
     add_corridors("corridor_builder and a corridor, grown_grid", {});
     add_corridors("corridor_builder and a corridor, sphere",
                   {.margin = corridor_builder::Margin::sphere});
+    add_tracker();
     for (Follower& f : followers_) f.follow(map_);
   }
 
@@ -110,7 +137,10 @@ class Run {
       conversions::fill_msg(update, m);
       bricks.push_back(double(update.bricks.size()));
       taken_us.push_back(time_us([&] { map_ = take(m); }, Clock::processor));
-      for (Follower& f : followers_) f.us.push_back(time_us([&] { f.follow(map_); }, Clock::processor));
+      for (Follower& f : followers_) {
+        f.prepare();
+        f.us.push_back(time_us([&] { f.follow(map_); }, Clock::processor));
+      }
     }
     add_row(report, scattered, "map subscription", taken_us, median(bricks));
     for (const Follower& f : followers_) add_row(report, scattered, f.name, f.us, median(bricks));
@@ -138,6 +168,14 @@ class Run {
                             const std::vector<Vec3> path{{0.5, 0.5, 9.5}, {1.5, 0.5, 9.5}};
                             (void)builder->build(*map, path, *corridor).ok();
                           }});
+  }
+
+  void add_tracker() {
+    const auto tracker = std::make_shared<tracker::Tracker>(flying_tracker());
+    followers_.push_back(
+        {.name = "tracker, 48 m of flight",
+         .follow = [tracker](const Map& map) { tracker->set_map(map, 8'000'000); },
+         .prepare = [tracker, flying = flying_tracker()] { *tracker = flying; }});
   }
 
   static void add_row(Report& report, bool scattered, const std::string& stage,

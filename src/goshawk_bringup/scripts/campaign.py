@@ -14,6 +14,7 @@ import signal
 import sys
 
 import campaign_report
+import faults
 import slurm_engine
 from mission import DONE, NOT_DONE, Flyer, Mission
 
@@ -49,13 +50,26 @@ def keep_options(options):
 
 
 def tell(number, count, row):
-    faults = row.get("faults")
+    found = row.get("faults")
     print(f"{number}/{count} mission {row['mission']} {row['kind']} {row['density']}: "
           f"{row['arrived']} of {row['legs']} goals, {row['verdict']}"
-          + (f", {len(faults)} faults" if faults is not None else ""), file=sys.stderr, flush=True)
-    for fault in faults or []:
+          + (f", {len(found)} faults" if found is not None else ""), file=sys.stderr, flush=True)
+    for fault in found or []:
         if fault["contacts"] or fault["goals_lost"] or fault["too_fast"]:
             print("    " + campaign_report.sentence(fault), file=sys.stderr, flush=True)
+
+
+class Missing(Exception):
+    """Something that the campaign needs is not installed."""
+
+
+def check_programs(options):
+    """Strangers are programs of the system tests."""
+    for name in faults.HOSTILE_PROGRAMS if "hostile" in options.faults else []:
+        path = pathlib.Path(options.prefix) / "bin" / name
+        if not path.exists():
+            raise Missing(f"{path} is not installed, which --faults hostile needs: build the package "
+                          "goshawk_system_tests")
 
 
 class LocalEngine:
@@ -121,13 +135,14 @@ def main():
     options = read_options()
     try:
         options.output.mkdir(parents=True, exist_ok=True)
+        check_programs(options)
         keep_options(options)
         rows, interrupted = run(options)
         if options.faults:
             campaign_report.write_faults(rows, options.output / "faults.csv")
     except OtherCampaign as other:
         return fail(options, "invalid_parameter", str(other), 2)
-    except slurm_engine.Unavailable as fault:
+    except (Missing, slurm_engine.Unavailable) as fault:
         return fail(options, "io_failed", str(fault))
     except OSError as error:
         return fail(options, "io_failed", f"{error.filename}: {error.strerror}")

@@ -35,6 +35,7 @@ def summary(rows):
     if any("faults" in r for r in rows):
         result["largest_speed_ratio"] = max((r["speed_ratio"] for r in rows if "speed_ratio" in r),
                                             default=None)
+        result["unseen_gaps"] = sum(r.get("unseen", 0) for r in rows)
         result["faults"] = fault_report.summary(faults_of(rows))
     return result
 

@@ -14,14 +14,19 @@ import random
 import shutil
 import signal
 
-import forgery
-
 KINDS = ["kill", "stall", "clock", "loss", "blind", "hostile"]
 PLANT = "simulator"
 STAGES = ["map_server", "path_search", "corridor_builder", "trajectory_optimizer", "navigator",
           "tracker", "flight_check"]
 # Everything that runs in a flight; the more a stage has to do with control, the more often it is hit.
 TARGETS = STAGES + ["navigator", "tracker"]
+# What goshawk_impostor can send in the name of a stage.
+LIES = {"commit": "committed trajectories", "trajectory": "certified trajectories through obstacles",
+        "bad_trajectory": "trajectories that are not certified", "corridor": "corridors",
+        "request": "plan requests", "report": "stage reports", "map": "a map that is free everywhere",
+        "update": "map updates that free bricks", "blocked_map": "a map that is blocked everywhere",
+        "odom": "odometry of another place", "command": "500 setpoints a second of full tilt"}
+HOSTILE_PROGRAMS = ["goshawk_datagram_storm", "goshawk_impostor"]
 EMPTY_MAP = (b"# Octomap OcTree binary file\nid OcTree\nsize 0\nres 0.1\ndata\n")
 
 
@@ -146,30 +151,33 @@ class Blind(Fault):
 
 
 class Hostile(Fault):
+    """Programs of goshawk_system_tests (hostile/)."""
+
     kind = "hostile"
 
     def choose(self, draw):
         self.seed = draw.randrange(1, 1 << 31)
         self.duration_s = draw.uniform(2.0, 5.0)
-        self.act = draw.choice(["storm", *forgery.ACTS])
-        self.processes = []
+        self.lie = draw.choice(["", *LIES])
+        self.place = [draw.random() for _ in range(3)]  # of the world's size
 
     def what(self):
-        if self.act == "storm":
-            return "mutated datagrams to every process"
-        return f"a stranger publishes {forgery.ACTS[self.act].what}"
+        return (f"an impostor sends {LIES[self.lie]}" if self.lie else
+                f"mutated datagrams to every process, seed {self.seed}")
 
     def begin(self, flight):
-        if self.act == "storm":
-            command = [flight.program("goshawk_datagram_storm"), "--count", "1000000", "--rate",
-                       "1000", "--listen", "1", "--seed", str(self.seed)]
-        else:
-            command = forgery.ACTS[self.act].command(flight, random.Random(self.seed))
-        self.processes = [flight.start(command)]
+        self.process = flight.start(self.command(flight))
+
+    def command(self, flight):
+        if not self.lie:
+            return [flight.program("goshawk_datagram_storm"), "--count", "1000000", "--rate",
+                    "1000", "--listen", "1", "--seed", str(self.seed)]
+        to = ",".join(f"{part * size:.2f}" for part, size in zip(self.place, flight.size_m))
+        rate = ["--rate", "500"] if self.lie == "command" else []
+        return [flight.program("goshawk_impostor"), self.lie, "--to", to, *rate]
 
     def end(self, flight):
-        for process in self.processes:
-            flight.stop(process)
+        flight.stop(self.process)
 
 
 CLASSES = {c.kind: c for c in (Kill, Stall, Clock, Loss, Blind, Hostile)}

@@ -1,5 +1,6 @@
 """A flight with faults: injects them while `goshawk fly` runs, and notes when."""
 
+import errno
 import json
 import os
 import pathlib
@@ -51,9 +52,9 @@ class Events:
 class FaultyFlight:
     """What a fault acts on: the stages' processes, their shims, the map that they load."""
 
-    def __init__(self, prefix, folder, true_world, free_world, env, seed):
+    def __init__(self, prefix, folder, true_world, size_m, env, seed):
         self.prefix, self.folder = pathlib.Path(prefix), pathlib.Path(folder)
-        self.true_world, self.free_world = true_world, free_world
+        self.true_world, self.size_m = true_world, size_m
         self.world = self.folder / "loaded.bt"
         self.world.write_bytes(pathlib.Path(true_world).read_bytes())
         self.env, self.domain = env, None
@@ -90,7 +91,7 @@ class FaultyFlight:
     def start(self, command):
         """A program in the flight's domain."""
         if self.domain is None:
-            self.domain = domain_of(next(iter(self.pids().values())))
+            self.domain = domain_of(self.pids().values())
         return subprocess.Popen(command, env={**self.env, "ROS_DOMAIN_ID": self.domain},
                                 stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
                                 stderr=subprocess.DEVNULL, start_new_session=True)
@@ -105,9 +106,17 @@ class FaultyFlight:
                 pass
 
 
-def domain_of(pid):
-    variables = pathlib.Path(f"/proc/{pid}/environ").read_bytes().split(b"\0")
-    return next(v for v in variables if v.startswith(b"ROS_DOMAIN_ID=")).split(b"=")[1].decode()
+def domain_of(pids):
+    """The DDS domain of the processes that live of these."""
+    for pid in pids:
+        try:
+            variables = pathlib.Path(f"/proc/{pid}/environ").read_bytes().split(b"\0")
+        except OSError:
+            continue
+        for variable in variables:
+            if variable.startswith(b"ROS_DOMAIN_ID="):
+                return variable.split(b"=")[1].decode()
+    raise OSError(errno.ESRCH, "no stage runs", "flight")
 
 
 class Injector:

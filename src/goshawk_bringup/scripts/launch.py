@@ -196,17 +196,23 @@ def place(plan, options):
     return answer["message"]
 
 
-def keep_journal(plan, log_dir):
-    """Gives the map server a journal, so that it comes back with the map that it had. What another
-    launch left there is of another flight."""
-    server = plan.node_of({"map_server"})
-    if server is None or any(a.startswith(f"{server}:journal_file:=")
-                             for a in plan.ros_args(plan.stages_with_nodes())):
-        return
-    path = os.path.abspath(os.path.join(log_dir, "map.journal"))
-    if os.path.exists(path):
-        os.unlink(path)
-    plan.extra += ["-p", f"{server}:journal_file:={path}"]
+# component, its parameter, and the file in the folder of logs
+MEMORIES = (("map_server", "journal_file", "map.journal"),
+            ("navigator", "memory_file", "navigator.memory"))
+
+
+def keep_memories(plan, log_dir):
+    """Gives stages files, so that one that is started again goes on where it ended: the map server
+    with its map, the navigator with its goal. What another launch has left there is removed."""
+    arguments = plan.ros_args(plan.stages_with_nodes())
+    for component, parameter, name in MEMORIES:
+        node = plan.node_of({component})
+        if node is None or any(a.startswith(f"{node}:{parameter}:=") for a in arguments):
+            continue
+        path = os.path.abspath(os.path.join(log_dir, name))
+        if os.path.exists(path):
+            os.remove(path)
+        plan.extra += ["-p", f"{node}:{parameter}:={path}"]
 
 
 def domain_of(content):
@@ -242,7 +248,7 @@ def launch(options, voice):
     said = place(plan, options)
     if said:
         voice.say("placed", text=said)
-    keep_journal(plan, options["log_dir"])
+    keep_memories(plan, options["log_dir"])
     programs = plan.programs()
     running = Launch(programs, os.path.abspath(options["log_dir"]), voice)
 

@@ -191,10 +191,10 @@ class FuzzedFiles(Folder):
                 self.fail(f"{bug!r} for the launch file:\n{text}")
 
 
-class Journals(Folder):
+class Memories(Folder):
     def arguments(self, text, extra=()):
         plan = self.plan(text, extra)
-        launch.keep_journal(plan, str(self.folder))
+        launch.keep_memories(plan, str(self.folder))
         return plan.extra
 
     def test_a_map_server_gets_a_journal_of_this_flight(self):
@@ -202,6 +202,13 @@ class Journals(Folder):
         old.write_text("of another flight")
         self.assertEqual(self.arguments("stages:\n  - {component: map_server, node: maps}\n"),
                          ["-p", f"maps:journal_file:={old}"])
+        self.assertFalse(old.exists())
+
+    def test_a_navigator_gets_a_file_for_its_goal(self):
+        old = self.folder / "navigator.memory"
+        old.write_text("of another flight")
+        self.assertEqual(self.arguments("stages:\n  - {component: navigator, node: pilot}\n"),
+                         ["-p", f"pilot:memory_file:={old}"])
         self.assertFalse(old.exists())
 
     def test_one_that_the_file_or_the_call_names_is_left_alone(self):

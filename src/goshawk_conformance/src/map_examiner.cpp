@@ -170,15 +170,19 @@ void MapExaminer::examine_octomap() {
   report_.items.push_back({"publishes an OctoMap", fault.empty(), fault});
 }
 
-void MapExaminer::send_vehicle() {
+void MapExaminer::place_vehicle(std::int64_t stamp_ns) {
   nav_msgs::msg::Odometry m;
   RigidBodyState state;
   state.position_map = vehicle_map_;
   conversions::fill_msg(state, m);
+  m.header(conversions::make_header(stamp_ns));
+  (void)odometry_.publish(m);
+}
+
+void MapExaminer::send_vehicle() {
   // Best effort: only some of them arrive.
   for (int k = 0; k < 10; ++k) {
-    m.header(conversions::make_header(node_.now_ns()));
-    (void)odometry_.publish(m);
+    place_vehicle(node_.now_ns());
     spin_until(0.03, [] { return false; });
   }
 }
@@ -187,7 +191,11 @@ bool MapExaminer::see(const Cloud& cloud) {
   listener_.listen(0);
   const std::uint64_t before = grid_->version;
   const std::int64_t sent_ns = node_.now_ns();
-  (void)clouds_.publish(cloud);
+  // Measured just now, where the vehicle is.
+  place_vehicle(sent_ns);
+  Cloud stamped = cloud;
+  stamped.header().stamp(conversions::to_stamp(sent_ns));
+  (void)clouds_.publish(stamped);
   const bool changed = spin_until(options_.timeout_s,
                                   [&] { return grid_->version > before || listener_.failed(); }) &&
                        grid_->version > before;

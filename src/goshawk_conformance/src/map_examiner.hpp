@@ -29,6 +29,7 @@ class MapExaminer {
   void examine_first_map();
   void examine_late_joiner();
   void examine_octomap();
+  void place_vehicle(std::int64_t stamp_ns);
   void send_vehicle();
   /// Sends a cloud. @return whether the map changed within the timeout
   bool see(const Cloud& cloud);

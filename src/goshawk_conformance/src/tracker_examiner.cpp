@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "goshawk/conversions/grid.hpp"
 #include "goshawk/conversions/plan.hpp"
 #include "goshawk/conversions/status.hpp"
 #include "goshawk/conversions/vehicle.hpp"
@@ -69,7 +70,8 @@ TrackerExaminer::TrackerExaminer(runtime::Context& context, const Options& optio
       node_(context, "goshawk_conform", in_namespace(options.node_namespace)),
       listener_(node_, options.stage),
       odometry_(node_.advertise<nav_msgs::msg::Odometry>("odom", Qos::best_effort())),
-      commits_(node_.advertise<Committed>("committed_trajectory", Qos::latched())) {
+      commits_(node_.advertise<Committed>("committed_trajectory", Qos::latched())),
+      maps_(node_.advertise<msg::VoxelGrid>("map/voxels", Qos::latched())) {
   vehicle_.position_map = Vec3(1.0, 2.0, 1.5);
   node_.subscribe<msg::AttitudeSetpoint>(
       "command", Qos::best_effort(10),
@@ -86,6 +88,8 @@ Result<Report> TrackerExaminer::examine(const std::vector<Committed>& recorded) 
                                              " running, in this domain and namespace?");
   }
   report_.stage = options_.stage;
+  for (const auto& m : recorded) map_version_ = std::max(map_version_, m.map_version());
+  send_map(false);
   live(2.0, [&] { return listener_.ready(); });
   report_.items.push_back(
       {"reports that it is ready", listener_.ready(),
@@ -164,6 +168,20 @@ void TrackerExaminer::take(const msg::AttitudeSetpoint& m, std::int64_t received
   command_ = *command;
 }
 
+// Free everywhere around, or with a layer of obstacles above the vehicle.
+void TrackerExaminer::send_map(bool blocked_above) {
+  VoxelGrid grid;
+  grid.geometry = {.origin_map = {-64.0, -64.0, -16.0}, .resolution_m = 1.0, .size = {128, 128, 64}};
+  grid.grown = BitGrid(grid.geometry.size, true);
+  grid.version = ++map_version_;
+  const int above = int(std::floor(vehicle_.position_map.z() + 2.0 + 16.0));
+  for (int y = 0; blocked_above && y < 128; ++y) grid.grown.set_run(0, 128, y, above, true);
+  msg::VoxelGrid m;
+  conversions::fill_msg(grid, m);
+  m.header(conversions::make_header(node_.now_ns()));
+  (void)maps_.publish(m);
+}
+
 // It hovers: its thrust is the weight.
 void TrackerExaminer::weigh() {
   double sum_n = 0.0;
@@ -202,6 +220,8 @@ TrackerExaminer::Committed TrackerExaminer::straight(const Vec3& by, double dura
   m.nominal().polytopes({box_around(from, to, 0.5)});
   m.header(conversions::make_header(node_.now_ns()));
   m.nominal().header(m.header());
+  m.nominal().map_version(map_version_);
+  m.map_version(map_version_);
   return m;
 }
 
@@ -317,6 +337,13 @@ void TrackerExaminer::examine_bad() {
     m.nominal().request().limits().v_max(1e4);
     m.nominal().request().limits().a_max(1e4);
   });
+  refuse("one of a map that never came", {"no_map"},
+         [](Committed& m) { m.map_version(m.map_version() + 1000); });
+  send_map(true);
+  live(options_.timeout_s, kNever);  // the map must have come, by another topic
+  refuse("one through an obstacle", {"trajectory_blocked"},
+         [&](Committed& m) { m = straight(Vec3(0.0, 0.0, 3.0), 10.0); });
+  send_map(false);
   live(0.5, kNever);
   const double moved_m = (vehicle_.position_map - before).norm();
   report_.items.push_back({"stays in place after bad trajectories", moved_m < 0.1,

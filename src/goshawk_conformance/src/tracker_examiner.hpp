@@ -37,6 +37,7 @@ class TrackerExaminer {
   void move();
   void send_odometry();
   void take(const goshawk_msgs::msg::AttitudeSetpoint& m, std::int64_t received_ns);
+  void send_map(bool blocked_above);
   void weigh();
   /// @return [ns] when it begins
   std::int64_t commit(Committed committed, double begins_in_s);
@@ -58,6 +59,8 @@ class TrackerExaminer {
   ReportListener listener_;
   runtime::Publisher<nav_msgs::msg::Odometry> odometry_;
   runtime::Publisher<Committed> commits_;
+  runtime::Publisher<goshawk_msgs::msg::VoxelGrid> maps_;
+  std::uint64_t map_version_ = 0;  // of the newest map
   Report report_;
 
   RigidBodyState vehicle_;

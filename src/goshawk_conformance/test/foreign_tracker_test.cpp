@@ -4,7 +4,7 @@
 
 #include "goshawk/conversions/plan.hpp"
 #include "goshawk/conversions/vehicle.hpp"
-#include "goshawk/stage/stage_reporter.hpp"
+#include "goshawk/stage/map_subscription.hpp"
 #include "goshawk/tracker/config.hpp"
 #include "goshawk/tracker/tracker.hpp"
 #include "support.hpp"
@@ -28,6 +28,7 @@ class ForeignTracker {
         fault_(fault),
         tracker_(*tracker::Tracker::create({})),
         reporter_(node, StageRole::tracker, "foreign"),
+        map_(node, reporter_, [this](const auto& grid) { tracker_.set_map(grid, node_.now_ns()); }),
         commands_(node.advertise<msg::AttitudeSetpoint>("command", Qos::best_effort())),
         states_(node.advertise<msg::TrackingState>("tracking_state", Qos::best_effort())) {
     node.subscribe<msg::CommittedTrajectory>(
@@ -83,6 +84,7 @@ class ForeignTracker {
   int steps_ = 0;
   tracker::Tracker tracker_;
   stage::StageReporter reporter_;
+  stage::MapSubscription map_;
   runtime::Publisher<msg::AttitudeSetpoint> commands_;
   runtime::Publisher<msg::TrackingState> states_;
   msg::AttitudeSetpoint command_;

@@ -30,6 +30,13 @@ StageRole stage_role_of(std::uint8_t value) {
   return value <= stage::STAGE_VIEWER ? StageRole(value) : StageRole::other;
 }
 
+ErrorCode error_code_of(std::string_view name) {
+  for (const ErrorCode code : all_error_codes()) {
+    if (to_string(code) == name) return code;
+  }
+  return ErrorCode::invalid_input;
+}
+
 std::string_view navigator_state_word(std::uint8_t value) {
   switch (value) {
     case state::STATE_IDLE:

@@ -5,15 +5,23 @@
 #include <cmath>
 
 namespace goshawk::conversions {
+
+namespace {
+
+constexpr double kShortest = 1e-6;  // a shorter quaternion has no direction that could be meant
+
+}  // namespace
+
 Result<Quaternion> from_msg(const geometry_msgs::msg::Quaternion& m) {
   const Quaternion q(m.w(), m.x(), m.y(), m.z());
-  if (!(std::abs(q.norm() - 1.0) < 1e-3)) {  // NaN fails as well
+  const double length = q.coeffs().stableNorm();
+  if (!(length >= kShortest && std::isfinite(length))) {  // NaN fails as well
     return fail(ErrorCode::invalid_input,
-                fmt::format("an attitude quaternion has length {:.6g}: it must be 1 (w is the "
-                            "scalar part)",
-                            q.norm()));
+                fmt::format("a quaternion (x {:.3g}, y {:.3g}, z {:.3g}, w {:.3g}) is no rotation: "
+                            "it must be finite and not zero; without a rotation w is 1",
+                            m.x(), m.y(), m.z(), m.w()));
   }
-  return Quaternion(q.normalized());
+  return Quaternion(Eigen::Vector4d(q.coeffs() / length));
 }
 
 geometry_msgs::msg::Quaternion to_msg(const Quaternion& q) {
@@ -54,6 +62,18 @@ void fill_msg(const RigidBodyState& state, nav_msgs::msg::Odometry& m) {
   m.pose().pose().orientation(to_msg(state.q_map_base));
   m.twist().twist().linear(to_vector(state.q_map_base.conjugate() * state.velocity_map));
   m.twist().twist().angular(to_vector(state.angular_velocity_base));
+}
+
+Result<GoalPose> from_msg(const geometry_msgs::msg::PoseStamped& m) {
+  if (auto s = check_frame(m.header(), kMapFrame, "a goal"); !s) return s.error();
+  const auto q = from_msg(m.pose().orientation());
+  if (!q) return fail(q.code(), "the goal's orientation: " + q.error().message);
+  const GoalPose goal{from_msg(m.pose().position()), yaw_of(*q)};
+  if (!goal.position_map.allFinite()) {
+    return fail(ErrorCode::invalid_input,
+                fmt::format("the goal's position {} is not finite", to_text(goal.position_map)));
+  }
+  return goal;
 }
 
 Result<AttitudeSetpoint> from_msg(const goshawk_msgs::msg::AttitudeSetpoint& m) {

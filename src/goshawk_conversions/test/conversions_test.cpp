@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
+#include <numbers>
 
 #include "goshawk/conversions/grid.hpp"
 #include "goshawk/conversions/vehicle.hpp"
@@ -140,9 +142,57 @@ TEST(OdometryMessage, WithAWrongFrameOrQuaternionIsRefused) {
   fill_msg(RigidBodyState{}, m);
   m.pose().pose().orientation().w(0.0);
   EXPECT_EQ(from_msg(m).code(), ErrorCode::invalid_input);
+  m.pose().pose().orientation().w(std::nan(""));
+  EXPECT_EQ(from_msg(m).code(), ErrorCode::invalid_input);
   fill_msg(RigidBodyState{}, m);
   m.twist().twist().linear().x(std::nan(""));
   EXPECT_EQ(from_msg(m).code(), ErrorCode::invalid_input);
+}
+
+geometry_msgs::msg::Quaternion quaternion(double x, double y, double z, double w) {
+  geometry_msgs::msg::Quaternion m;
+  m.x(x);
+  m.y(y);
+  m.z(z);
+  m.w(w);
+  return m;
+}
+
+TEST(QuaternionMessage, OfAnyLengthIsMadeToHaveLengthOne) {
+  for (const double length : {1e-3, 1.0, std::sqrt(2.0), 40.0, 1e200}) {
+    const auto q = from_msg(quaternion(0.0, 0.0, length, length));
+    ASSERT_TRUE(q) << q.error().message;
+    EXPECT_NEAR(q->norm(), 1.0, 1e-12);
+    EXPECT_NEAR(yaw_of(*q), std::numbers::pi / 2.0, 1e-12) << length;
+  }
+}
+
+TEST(QuaternionMessage, WithoutADirectionIsRefused) {
+  const double inf = std::numeric_limits<double>::infinity();
+  for (const double bad : {0.0, 1e-9, -1e-300, std::nan(""), inf, -inf}) {
+    const auto q = from_msg(quaternion(0.0, bad, 0.0, 0.0));
+    EXPECT_EQ(q.code(), ErrorCode::invalid_input) << bad;
+  }
+}
+
+TEST(GoalMessage, GivesPlaceAndHeadingOrSaysWhatIsWrong) {
+  geometry_msgs::msg::PoseStamped m;
+  m.header(make_header(0));
+  m.pose().position(to_point(Vec3(1, 2, 3)));
+  m.pose().orientation(quaternion(0.0, 0.0, 1.0, 1.0));
+  const auto goal = from_msg(m);
+  ASSERT_TRUE(goal) << goal.error().message;
+  EXPECT_EQ(goal->position_map, Vec3(1, 2, 3));
+  EXPECT_NEAR(goal->yaw_rad, std::numbers::pi / 2.0, 1e-12);
+  m.pose().orientation(quaternion(0.0, 0.0, 0.0, 0.0));
+  EXPECT_EQ(from_msg(m).code(), ErrorCode::invalid_input);
+  EXPECT_NE(from_msg(m).error().message.find("orientation"), std::string::npos);
+  m.pose().orientation(quaternion(0.0, 0.0, 0.0, 1.0));
+  m.pose().position().y(std::nan(""));
+  EXPECT_EQ(from_msg(m).code(), ErrorCode::invalid_input);
+  m.pose().position().y(0.0);
+  m.header().frame_id("odom");
+  EXPECT_EQ(from_msg(m).code(), ErrorCode::wrong_frame);
 }
 
 TEST(CommandMessage, WithNegativeOrMissingThrustIsRefused) {

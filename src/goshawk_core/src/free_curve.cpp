@@ -17,6 +17,8 @@ using Points = Points3<6>;
 constexpr int kDeepest = 48;
 // Parts looked at for one piece; a curve that needs more runs along a surface within kTouch_m.
 constexpr int kMostParts = 100'000;
+// [voxels] beyond this no grid reaches, and numbers do not tell voxels apart.
+constexpr double kFarthest = 1e12;
 // Boxes that cover more rows are halved before their voxels are looked at.
 constexpr int kManyRows = 64;
 
@@ -139,8 +141,11 @@ class Prover {
 std::optional<Obstruction> obstruction_of_part(const VoxelGrid& grid, const BezierPiece& piece,
                                                double begin, double end) {
   const auto& g = grid.geometry;
-  if (!piece.control_points.allFinite()) return Obstruction{begin * piece.duration_s, {-1, -1, -1}};
   Points curve = (piece.control_points.colwise() - g.origin_map) / g.resolution_m;
+  // NaN as well: neither is anywhere in a grid.
+  if (!(curve.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() < kFarthest)) {
+    return Obstruction{begin * piece.duration_s, {-1, -1, -1}};
+  }
   // Cut to [begin, end] by blossoming: de Casteljau to one end, then to the other.
   for (int side = 0; side < 2; ++side) {
     if (side == 0 ? begin <= 0.0 : end >= 1.0) continue;
@@ -168,9 +173,10 @@ std::optional<Obstruction> obstruction_of_part(const VoxelGrid& grid, const Bezi
 }  // namespace
 
 std::optional<Obstruction> find_obstruction(const VoxelGrid& grid, const BezierPiece& curve,
-                                            double from_s) {
+                                            double from_s, double to_s) {
   const double begin = std::clamp(from_s / curve.duration_s, 0.0, 1.0);
-  return obstruction_of_part(grid, curve, begin, 1.0);
+  const double end = std::clamp(to_s / curve.duration_s, begin, 1.0);
+  return obstruction_of_part(grid, curve, begin, end);
 }
 
 std::optional<Obstruction> find_obstruction(const VoxelGrid& grid, const Trajectory& trajectory,
@@ -190,18 +196,22 @@ std::optional<Obstruction> find_obstruction(const VoxelGrid& grid, const Traject
   return {};
 }
 
+std::string to_text(const VoxelGrid& grid, const Obstruction& found) {
+  const char* what = !grid.grown.contains(found.voxel) ? "its edge"
+                     : grid.unknown_is_occupied && !grid.is_known(found.voxel)
+                         ? "unknown space"
+                         : "an obstacle";
+  return fmt::format("map {} has {} at {} m", grid.version, what,
+                     to_text(grid.geometry.center(found.voxel)));
+}
+
 Status check_against(const VoxelGrid& grid, const CommittedTrajectory& committed, double from_s) {
   const auto found = find_obstruction(grid, committed.flown(), from_s,
                                       std::numeric_limits<double>::infinity());
   if (!found) return success();
-  const char* what = !grid.grown.contains(found->voxel) ? "its edge"
-                     : grid.unknown_is_occupied && !grid.is_known(found->voxel)
-                         ? "unknown space"
-                         : "an obstacle";
   return fail(ErrorCode::trajectory_blocked,
-              fmt::format("trajectory {} is blocked {:.3g} s after its start: map {} has {} at {} m",
-                          committed.id(), found->time_s, grid.version, what,
-                          to_text(grid.geometry.center(found->voxel))));
+              fmt::format("trajectory {} is blocked {:.3g} s after its start: {}", committed.id(),
+                          found->time_s, to_text(grid, *found)));
 }
 
 }  // namespace goshawk

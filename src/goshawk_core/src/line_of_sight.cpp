@@ -29,13 +29,23 @@ struct Bounds {
   }
 };
 
+// std::floor and std::ceil are calls on machines without SSE 4.1. @pre x fits an int
+int int_floor(double x) {
+  const int i = int(x);
+  return i - (x < i);
+}
+int int_ceil(double x) {
+  const int i = int(x);
+  return i + (x > i);
+}
+
 // Indices within bounds of the closed unit intervals [i, i + 1] that meet the closed interval
 // [lo, hi]. Compared as doubles first: a cast of a huge value to int is undefined.
 IndexRange intervals_met(double lo, double hi, IndexRange bounds) {
-  const double first = std::max(std::ceil(lo - kSlack) - 1.0, double(bounds.first));
-  const double last = std::min(std::floor(hi + kSlack), double(bounds.last));
-  if (!(first <= last)) return {0, -1};
-  return {int(first), int(last)};
+  const double low = lo - kSlack, high = hi + kSlack;
+  if (!(low <= double(bounds.last) + 1.0 && high >= double(bounds.first))) return {0, -1};
+  return {low <= double(bounds.first) ? bounds.first : int_ceil(low) - 1,
+          high >= double(bounds.last) ? bounds.last : int_floor(high)};
 }
 
 struct Interval {
@@ -43,14 +53,16 @@ struct Interval {
   double hi;
 };
 
-// The part of the segment a + t (b - a), t in [t0, t1], whose coordinate `axis` lies in
-// [lo, hi], as an interval of t; empty (lo > hi) where there is none.
-Interval clip(const Vec3& a, const Vec3& d, int axis, double lo, double hi, Interval t) {
+// The part of the segment a + t d, t in [t0, t1], whose coordinate `axis` lies in [lo, hi], as an
+// interval of t; empty (lo > hi) where there is none.
+// @param inverse 1 / d, element by element
+Interval clip(const Vec3& a, const Vec3& d, const Vec3& inverse, int axis, double lo, double hi,
+              Interval t) {
   if (std::abs(d[axis]) < 1e-15) {
     return a[axis] >= lo && a[axis] <= hi ? t : Interval{1.0, 0.0};
   }
-  double u = (lo - a[axis]) / d[axis];
-  double v = (hi - a[axis]) / d[axis];
+  double u = (lo - a[axis]) * inverse[axis];
+  double v = (hi - a[axis]) * inverse[axis];
   if (u > v) std::swap(u, v);
   return {std::max(t.lo, u), std::min(t.hi, v)};
 }
@@ -66,6 +78,7 @@ Interval extent(const Vec3& a, const Vec3& d, int axis, Interval t) {
 template <typename Visit>  // bool Visit(Index3): false stops
 bool walk(const Vec3& a, const Vec3& b, const Bounds& bounds, const Visit& visit) {
   const Vec3 d = b - a;
+  const Vec3 inverse = d.cwiseInverse();
   int u = 0;
   d.cwiseAbs().maxCoeff(&u);
   const int v = (u + 1) % 3;
@@ -76,12 +89,14 @@ bool walk(const Vec3& a, const Vec3& b, const Bounds& bounds, const Visit& visit
   const bool forward = d[u] >= 0.0;
   for (int n = 0; n <= slabs.last - slabs.first; ++n) {
     const int i = forward ? slabs.first + n : slabs.last - n;
-    const Interval t = clip(a, d, u, i - kSlack, i + 1 + kSlack, whole);
+    const Interval t = clip(a, d, inverse, u, i - kSlack, i + 1 + kSlack, whole);
     if (t.lo > t.hi) continue;
     const Interval across = extent(a, d, v, t);
     const IndexRange rows = intervals_met(across.lo, across.hi, bounds.axis(v));
     for (int j = rows.first; j <= rows.last; ++j) {
-      const Interval s = clip(a, d, v, j - kSlack, j + 1 + kSlack, t);
+      // Mostly one row holds all of the segment in the slab.
+      const bool whole_row = across.lo >= j - kSlack && across.hi <= j + 1 + kSlack;
+      const Interval s = whole_row ? t : clip(a, d, inverse, v, j - kSlack, j + 1 + kSlack, t);
       if (s.lo > s.hi) continue;
       const Interval rest = extent(a, d, w, s);
       const IndexRange cells = intervals_met(rest.lo, rest.hi, bounds.axis(w));

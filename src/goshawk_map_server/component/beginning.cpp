@@ -68,9 +68,27 @@ Result<MapJournal> open_journal(const Config& config, const JournalIdentity& ide
   return MapJournal::create(config.journal_file, identity);
 }
 
+/// A map that follows keeps what lies outside of its window: the rest of the file, and bricks.
+Result<RawVoxels> whole_of(RawVoxels window, const JournalContent& content, const Config& config) {
+  if (!config.follow_vehicle) return window;
+  if (!config.map_file.empty()) {
+    LoadOptions loading = load_options(config);
+    loading.box = {};
+    const auto source = load_map(config.map_file, loading);
+    if (!source) return source.error();
+    auto voxels = voxelize(*source, {});
+    if (!voxels) return voxels.error();
+    window = *std::move(voxels);
+  }
+  return content.widened(window, config.max_voxels);
+}
+
 /// The map with what the journal holds.
-Result<Beginning> take_over(RawVoxels voxels, const MapJournal& journal, const Config& config,
+Result<Beginning> take_over(RawVoxels window, const MapJournal& journal, const Config& config,
                             std::vector<std::string> notes) {
+  auto whole = whole_of(std::move(window), journal.content(), config);
+  if (!whole) return whole.error();
+  RawVoxels voxels = *std::move(whole);
   journal.content().write_into(voxels);
   MapSource source;
   source.voxels = std::move(voxels);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <spdlog/logger.h>
 
+#include <deque>
 #include <optional>
 
 #include "beginning.hpp"
@@ -10,10 +11,13 @@
 #include "goshawk/conversions/grid.hpp"
 #include "goshawk/conversions/vehicle.hpp"
 #include "goshawk/map_server/config.hpp"
+#include "goshawk/map_server/frame_tree.hpp"
 #include "goshawk/map_server/live_map.hpp"
+#include "goshawk/map_server/placement.hpp"
 #include "goshawk/runtime/component.hpp"
 #include "goshawk/stage/intake.hpp"
 #include "octomap_msgs.h"
+#include "tf2_msgs.h"
 
 namespace goshawk::map_server {
 namespace {
@@ -24,6 +28,10 @@ namespace msg = goshawk_msgs::msg;
 
 // How often, at the most, the whole map is published anew for late joiners while scans come in.
 constexpr double kWholeMapPeriod_s = 1.0;
+// How long poses are kept: clouds that come later are refused.
+constexpr double kPosesKept_s = 5.0;
+constexpr std::size_t kMostWaiting = 8;  // clouds that wait for odometry
+constexpr double kWaitingPeriod_s = 0.05;
 
 Beginning begin(const Config& config, Node& node) {
   auto beginning = begin_map(config);
@@ -32,7 +40,7 @@ Beginning begin(const Config& config, Node& node) {
   return *std::move(beginning);
 }
 
-/// A map file, and cloud_in -> map/voxels, map/voxels/updates, octomap_binary
+/// A map file; cloud_in, odom, /tf and /tf_static -> map/voxels, map/voxels/updates, octomap_binary
 class MapServerComponent : public Component {
  public:
   explicit MapServerComponent(Node& node)
@@ -47,16 +55,27 @@ class MapServerComponent : public Component {
         voxels_(node.advertise<msg::VoxelGrid>("map/voxels", Qos::latched())),
         updates_(
             node.advertise<msg::VoxelGridUpdate>("map/voxels/updates", Qos::reliable_last(50))),
-        octomap_(node.advertise<octomap_msgs::msg::Octomap>("octomap_binary", Qos::latched())) {
+        octomap_(node.advertise<octomap_msgs::msg::Octomap>("octomap_binary", Qos::latched())),
+        odometry_("odometry", kPosesKept_s, config_.pose_max_gap_s),
+        frames_(kPosesKept_s, config_.pose_max_gap_s) {
     node.subscribe<sensor_msgs::msg::PointCloud2>(
         "cloud_in", Qos::best_effort(2),
         [this](const sensor_msgs::msg::PointCloud2& m, const MessageInfo&) { on_cloud(m); });
     node.subscribe<nav_msgs::msg::Odometry>(
-        "odom", Qos::best_effort(),
-        [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) {
-          if (auto state = conversions::from_msg(m)) vehicle_ = *state;
-        },
+        "odom", Qos::best_effort(50),
+        [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) { on_odometry(m); },
         Writers::one("odom"));
+    node.subscribe<tf2_msgs::msg::TFMessage>(
+        "/tf_static", Qos::latched(100),
+        [this](const tf2_msgs::msg::TFMessage& m, const MessageInfo&) { on_frames(m, true); });
+    node.subscribe<tf2_msgs::msg::TFMessage>(
+        "/tf", Qos::best_effort(100),
+        [this](const tf2_msgs::msg::TFMessage& m, const MessageInfo&) { on_frames(m, false); });
+    if (!config_.sensor_frame.empty()) {
+      frames_.set_static(std::string(conversions::kBodyFrame), config_.sensor_frame,
+                         sensor_mount(config_));
+    }
+    node.every(kWaitingPeriod_s, [this] { place_waiting(); });
     node.every(kWholeMapPeriod_s, [this] {
       if (changed_) publish_whole();
       tell_of_journal();
@@ -97,19 +116,119 @@ class MapServerComponent : public Component {
     reporter_.send(octomap_, m);
   }
 
+  void on_odometry(const nav_msgs::msg::Odometry& m) {
+    const auto status = take_odometry(m);
+    // Odometry comes fast: the same fault is told once.
+    const ErrorCode code = status ? ErrorCode::ok : status.code();
+    if (code == odometry_code_) return;
+    odometry_code_ = code;
+    if (!status) reporter_.fault(status.error());
+  }
+
+  Status take_odometry(const nav_msgs::msg::Odometry& m) {
+    const auto state = conversions::from_msg(m);
+    if (!state) return state.error();
+    const auto status = odometry_.add(conversions::to_ns(m.header().stamp()),
+                                      {state->position_map, state->q_map_base});
+    if (!status) placed_ns_ = 0;
+    place_waiting();
+    return status;
+  }
+
+  void on_frames(const tf2_msgs::msg::TFMessage& m, bool fixed) {
+    for (const auto& t : m.transforms()) {
+      // The vehicle's own pose comes as odometry.
+      if (t.child_frame_id() == conversions::kBodyFrame) continue;
+      const auto q = conversions::from_msg(t.transform().rotation());
+      const Vec3 p = conversions::from_msg(t.transform().translation());
+      if (!q || !is_finite(p)) {
+        reporter_.fault(fail(ErrorCode::invalid_input,
+                             fmt::format("the transform of '{}' is not finite, or its quaternion "
+                                         "is not of length 1",
+                                         t.child_frame_id())));
+        continue;
+      }
+      if (fixed) {
+        frames_.set_static(t.header().frame_id(), t.child_frame_id(), {p, *q});
+      } else if (auto s = frames_.add(t.header().frame_id(), t.child_frame_id(),
+                                      conversions::to_ns(t.header().stamp()), {p, *q});
+                 !s) {
+        reporter_.fault(s.error());
+      }
+    }
+  }
+
   void on_cloud(const sensor_msgs::msg::PointCloud2& m) {
-    auto points = points_in_map(m);
-    if (!points) return reporter_.fault(points.error());
-    if (points->empty()) return;
-    const Vec3 origin = vehicle_->position_map;
-    const Scan scan{.points_map = *points,
-                    .origins_map = {&origin, 1},
+    Waiting next{{}, m.header().frame_id(), node_.now_ns()};
+    if (auto s = read_cloud(m, std::size_t(config_.max_points), next.cloud); !s) {
+      return reporter_.fault(s.error());
+    }
+    if (m.width() == 0 || m.height() == 0) return;  // nothing was seen
+    if (waiting_.size() == kMostWaiting) {
+      reporter_.fault(fail(ErrorCode::tracking_lost,
+                           "clouds come faster than the odometry that places them: the oldest is "
+                           "dropped"));
+      waiting_.pop_front();
+    }
+    waiting_.push_back(std::move(next));
+    place_waiting();
+  }
+
+  struct Waiting {
+    SensorCloud cloud;
+    std::string frame;
+    std::int64_t since_ns;
+  };
+
+  // In their order: a cloud whose odometry is still to come holds up those behind it.
+  void place_waiting() {
+    while (!waiting_.empty()) {
+      const Waiting& next = waiting_.front();
+      const auto status = place_in_map(next);
+      const double waited_s = 1e-9 * double(node_.now_ns() - next.since_ns);
+      const bool may_come = !status && status.code() == ErrorCode::tracking_lost &&
+                            !odometry_.empty() && waited_s < config_.pose_wait_s &&
+                            time_span(next.cloud).first_ns >= odometry_.oldest_ns();
+      if (may_come) return;
+      if (status) {
+        insert(next.cloud);
+      } else {
+        reporter_.fault(status.error());
+      }
+      waiting_.pop_front();
+    }
+  }
+
+  // Into placed_ and body_path_.
+  Status place_in_map(const Waiting& next) {
+    const TimeSpan span = time_span(next.cloud);
+    const auto body = odometry_.at(span.last_ns);
+    if (!body) return body.error();
+    if (next.frame == conversions::kMapFrame) {
+      const auto from = odometry_.at(next.cloud.stamp_ns);
+      if (!from) return from.error();
+      placed_.points_map = next.cloud.points;
+      placed_.origins_map.assign(1, from->position);
+    } else {
+      const auto chain = frames_.chain(next.frame, std::string(conversions::kBodyFrame));
+      if (!chain) return chain.error();
+      if (auto s = place(next.cloud, *chain, odometry_, placed_); !s) return s;
+    }
+    odometry_.positions(placed_ns_ == 0 ? span.first_ns : placed_ns_, span.last_ns, body_path_);
+    body_path_.push_back(body->position);
+    return success();
+  }
+
+  void insert(const SensorCloud& cloud) {
+    const Scan scan{.points_map = placed_.points_map,
+                    .origins_map = placed_.origins_map,
                     .max_range_m = config_.max_range_m,
-                    .body_path_map = {&origin, 1},
+                    .body_path_map = body_path_,
                     .body_radius_m = config_.body_radius_m};
     if (auto status = map_.insert_scan(scan, result_); !status) {
       return reporter_.fault(status.error());
     }
+    placed_ns_ = time_span(cloud).last_ns;
     GridUpdate& update = result_.update;
     update.from_version += beginning_.versions_before;
     update.to_version += beginning_.versions_before;
@@ -123,21 +242,6 @@ class MapServerComponent : public Component {
   void tell_of_journal() {
     if (!beginning_.journal) return;
     if (const auto fault = beginning_.journal->take_fault()) reporter_.fault(*fault);
-  }
-
-  // Clouds come in the body's frame, turned by the newest odometry, or in the map's.
-  Result<std::vector<Vec3>> points_in_map(const sensor_msgs::msg::PointCloud2& m) const {
-    if (!vehicle_) {
-      return fail(ErrorCode::tracking_lost,
-                  "a cloud came before any odometry, so its sensor's place is not known");
-    }
-    auto points = points_of(m);
-    if (!points || m.header().frame_id() == conversions::kMapFrame) return points;
-    if (auto s = conversions::check_frame(m.header(), conversions::kBodyFrame, "a cloud"); !s) {
-      return s.error();
-    }
-    for (auto& p : *points) p = vehicle_->position_map + vehicle_->q_map_base * p;
-    return points;
   }
 
   void publish_update(GridUpdate& update) {
@@ -159,7 +263,13 @@ class MapServerComponent : public Component {
   Publisher<msg::VoxelGrid> voxels_;
   Publisher<msg::VoxelGridUpdate> updates_;
   Publisher<octomap_msgs::msg::Octomap> octomap_;
-  std::optional<RigidBodyState> vehicle_;
+  PoseBuffer odometry_;
+  FrameTree frames_;
+  std::deque<Waiting> waiting_;
+  PlacedCloud placed_;           // their memory is used again
+  std::vector<Vec3> body_path_;  // since the scan before
+  std::int64_t placed_ns_ = 0;   // end of the scan before; 0: none
+  ErrorCode odometry_code_ = ErrorCode::ok;
   bool changed_ = false;
 };
 

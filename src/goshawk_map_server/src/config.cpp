@@ -43,4 +43,12 @@ Result<LiveOptions> live_options(const Config& config) {
   return options;
 }
 
+Pose sensor_mount(const Config& c) {
+  using Eigen::AngleAxisd;
+  const Quaternion q(AngleAxisd(c.sensor_yaw_rad, Vec3::UnitZ()) *
+                     AngleAxisd(c.sensor_pitch_rad, Vec3::UnitY()) *
+                     AngleAxisd(c.sensor_roll_rad, Vec3::UnitX()));
+  return {Vec3(c.sensor_x_m, c.sensor_y_m, c.sensor_z_m), q};
+}
+
 }  // namespace goshawk::map_server

@@ -9,6 +9,8 @@
 namespace goshawk::map_server {
 namespace {
 
+constexpr int kFarthest = 1 << 26;  // [voxels] from the origin of the frame; beyond lies no map
+
 static_assert(std::endian::native == std::endian::little, "journals are little-endian");
 
 /// Collects entries until the last one of their batch is there.
@@ -44,6 +46,11 @@ class BatchReader {
   JournalContent& content_;
   std::vector<JournalEntry> batch_;
 };
+
+bool is_whole(const JournalEntry& entry) {
+  return entry.checksum == checksum_of_block(entry) &&
+         std::ranges::all_of(entry.corner, [](int v) { return v >= -kFarthest && v <= kFarthest; });
+}
 
 Status check_head(const JournalHead& head, const JournalIdentity& identity) {
   if (head.magic != kJournalMagic || head.checksum != checksum_of_block(head)) {
@@ -116,7 +123,7 @@ Result<JournalContent> read_journal(std::span<const std::byte> bytes,
     JournalEntry entry;
     const bool cut_off = bytes.size() - at < sizeof entry;
     if (!cut_off) std::memcpy(&entry, bytes.data() + at, sizeof entry);
-    if (cut_off || entry.checksum != checksum_of_block(entry)) {
+    if (cut_off || !is_whole(entry)) {
       batches.drop();
       ++content.damaged;
       if (cut_off) break;
@@ -141,6 +148,34 @@ void JournalContent::write_into(RawVoxels& map) const {
       map.known.set(voxel, brick.known[std::size_t(word)] >> x & 1);
     }
   }
+}
+
+Result<RawVoxels> JournalContent::widened(const RawVoxels& map, std::int64_t max_voxels) const {
+  const GridGeometry& old = map.geometry;
+  const Vec3 steps = (old.origin_map / old.resolution_m).array().round().matrix();
+  const Index3 begin{int(steps.x()), int(steps.y()), int(steps.z())};
+  Index3 lower = begin, upper = begin + old.size;
+  for (const auto& [corner, brick] : bricks) {
+    lower = {std::min(lower.x, corner.x), std::min(lower.y, corner.y), std::min(lower.z, corner.z)};
+    upper = {std::max(upper.x, corner.x + Brick::kSizeX), std::max(upper.y, corner.y + Brick::kSizeY),
+             std::max(upper.z, corner.z + Brick::kSizeZ)};
+  }
+  const Box box{old.resolution_m * Vec3(lower.x, lower.y, lower.z),
+                old.resolution_m * Vec3(upper.x, upper.y, upper.z)};
+  const auto raster = raster_of(box, old.resolution_m, max_voxels);
+  if (!raster) return raster.error();
+  RawVoxels wide{*raster, BitGrid(raster->size, true), BitGrid(raster->size, false)};
+  for (int z = 0; z < old.size.z; ++z) {
+    for (int y = 0; y < old.size.y; ++y) {
+      for (int x = 0; x < old.size.x; ++x) {
+        if (!map.known.get({x, y, z})) continue;
+        const Index3 at{x + begin.x - lower.x, y + begin.y - lower.y, z + begin.z - lower.z};
+        wide.known.set(at, true);
+        wide.occupied.set(at, map.occupied.get({x, y, z}));
+      }
+    }
+  }
+  return wide;
 }
 
 std::vector<JournalBrick> journal_bricks(const GridUpdate& update, const GridGeometry& geometry) {

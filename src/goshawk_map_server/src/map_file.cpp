@@ -155,4 +155,16 @@ Result<MapSource> load_map(const std::string& path, const LoadOptions& options) 
   return about(path, no_memory());
 }
 
+Result<std::vector<Vec3>> load_points(const std::string& path) {
+  const auto bytes = read_bytes(path);
+  if (!bytes) return about(path, bytes.error());
+  const std::string ending = lower_case_ending(path);
+  if (ending != "pcd" && ending != "ply") {
+    return about(path, fail(ErrorCode::map_unreadable, "its name must end in .pcd or .ply"));
+  }
+  auto cloud = ending == "pcd" ? read_pcd(*bytes) : read_ply(*bytes);
+  if (!cloud) return about(path, cloud.error());
+  return std::move(cloud->points);
+}
+
 }  // namespace goshawk::map_server

@@ -59,12 +59,11 @@ struct RayScan::Ray {
 };
 
 void RayScan::begin(Index3 lower, Index3 counts) {
-  for (const std::uint32_t line : lines_) {
+  for_touched([this](std::size_t line) {
     std::fill_n(missed_.begin() + std::ptrdiff_t(line) * kLine, kLine, 0);
     std::fill_n(hit_.begin() + std::ptrdiff_t(line) * kLine, kLine, 0);
     touched_[line] = 0;
-  }
-  lines_.clear();
+  });
   lower_ = lower;
   counts_ = counts;
   size_ = {64 * counts.x, 8 * counts.y, 8 * counts.z};
@@ -76,31 +75,27 @@ void RayScan::begin(Index3 lower, Index3 counts) {
   touched_.resize(words / kLine);
 }
 
-void RayScan::touch(std::size_t word) {
-  std::uint8_t& mark = touched_[word / kLine];
-  if (mark != 0) return;
-  mark = 1;
-  lines_.push_back(std::uint32_t(word / kLine));
-}
+// Where rays are marked; apart from the scan, so that a write does not make it be read again.
+struct RayScan::Marks {
+  Word* missed;
+  std::uint8_t* touched;
+  std::int64_t plane;
 
-// The voxels between x0 and x1, in any order, of a row.
-inline void RayScan::mark(std::int64_t row, int x0, int x1) {
-  const int low = std::min(x0, x1), high = std::max(x0, x1);
-  const Word from_low = ~Word{0} << (low & 63), to_high = ~Word{0} >> (63 - (high & 63));
-  auto at = std::size_t(row + (low >> 6) * plane_);
-  if ((low >> 6) == (high >> 6)) {
-    missed_[at] |= from_low & to_high;
-    return touch(at);
+  void put(std::size_t at, Word bits) const {
+    missed[at] |= bits;
+    touched[at / kLine] = 1;
   }
-  missed_[at] |= from_low;
-  touch(at);
-  for (int w = (low >> 6) + 1; w < (high >> 6); ++w) {
-    missed_[at += std::size_t(plane_)] = ~Word{0};
-    touch(at);
+  // The voxels between x0 and x1, in any order, of a row.
+  void put(std::int64_t row, int x0, int x1) const {
+    const int low = std::min(x0, x1), high = std::max(x0, x1);
+    const Word from_low = ~Word{0} << (low & 63), to_high = ~Word{0} >> (63 - (high & 63));
+    auto at = std::size_t(row + (low >> 6) * plane);
+    if ((low >> 6) == (high >> 6)) return put(at, from_low & to_high);
+    put(at, from_low);
+    for (int w = (low >> 6) + 1; w < (high >> 6); ++w) put(at += std::size_t(plane), ~Word{0});
+    put(at + std::size_t(plane), to_high);
   }
-  missed_[at += std::size_t(plane_)] |= to_high;
-  touch(at);
-}
+};
 
 // From row to row up to the voxel `last`, which is not marked.
 template <bool kInside>
@@ -112,25 +107,28 @@ void RayScan::walk(const Ray& ray, Index3 last, int steps_y, int steps_z) {
   int x = ray.x.first, y = ray.y.first, z = ray.z.first;
   std::int64_t row = std::int64_t{z} * size_.y + y;
   const std::int64_t step_z = std::int64_t{ray.z.step} * size_.y;
+  const Marks marks{missed_.data(), touched_.data(), plane_};
   const auto put = [&](int x0, int x1) {
-    if constexpr (kInside) return mark(row, x0, x1);
+    if constexpr (kInside) return marks.put(row, x0, x1);
     if (unsigned(y) >= unsigned(size_.y) || unsigned(z) >= unsigned(size_.z)) return;
     const int a = std::max(std::min(x0, x1), 0), b = std::min(std::max(x0, x1), size_.x - 1);
-    if (a <= b) mark(row, a, b);
+    if (a <= b) marks.put(row, a, b);
   };
+  // Masks in place of branches: which face comes next cannot be foretold.
   for (int n = steps_y + steps_z; n > 0; --n) {
-    const bool across_y = next_y <= next_z;
-    const int to = std::clamp(int((across_y ? place_y : place_z) >> kFraction), low, high);
+    const std::int64_t by_y = -std::int64_t(next_y <= next_z), by_z = ~by_y;
+    const std::int64_t place = (place_y & by_y) | (place_z & by_z);
+    const int to = std::clamp(int(place >> kFraction), low, high);
     put(x, to);
     x = to;
-    next_y += across_y ? ray.y.every : 0;
-    place_y += across_y ? advance_y : 0;
-    next_z += across_y ? 0 : ray.z.every;
-    place_z += across_y ? 0 : advance_z;
-    row += across_y ? ray.y.step : step_z;
+    next_y += ray.y.every & by_y;
+    place_y += advance_y & by_y;
+    next_z += ray.z.every & by_z;
+    place_z += advance_z & by_z;
+    row += (ray.y.step & by_y) | (step_z & by_z);
     if constexpr (!kInside) {
-      y += across_y ? ray.y.step : 0;
-      z += across_y ? 0 : ray.z.step;
+      y += int(ray.y.step & by_y);
+      z += int(ray.z.step & by_z);
     }
   }
   if (ray.x.step > 0 ? x < last.x : x > last.x) put(x, last.x - ray.x.step);
@@ -151,7 +149,7 @@ void RayScan::cast(const Vec3& from, const Vec3& to, bool hits, const BrickMap* 
     const auto at =
         std::size_t((end.x >> 6) * plane_ + std::int64_t{end.z} * size_.y + end.y);
     hit_[at] |= Word{1} << (end.x & 63);
-    touch(at);
+    touched_[at / kLine] = 1;
     if (held != nullptr) last = first_held(ray, *held);
   }
   const int steps_y = std::abs(last.y - first.y), steps_z = std::abs(last.z - first.z);

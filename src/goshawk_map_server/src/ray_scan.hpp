@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <cstring>
 #include <vector>
 
 #include "goshawk/core/brick_map.hpp"
@@ -29,25 +30,36 @@ class RayScan {
   /// was touched; both point to 8 words. A voxel may be in both.
   template <typename Visit>
   void for_lines(Visit&& visit) const {
-    for (const std::uint32_t line : lines_) {
-      const std::uint32_t y = line % std::uint32_t(counts_.y);
-      const std::uint32_t rest = line / std::uint32_t(counts_.y);
-      const std::uint32_t z = rest % std::uint32_t(8 * counts_.z);
-      const Index3 brick{lower_.x + int(rest / std::uint32_t(8 * counts_.z)), lower_.y + int(y),
-                         lower_.z + int(z / 8)};
-      const std::size_t at = std::size_t(line) * kLine;
-      visit(brick, int(8 * (z % 8)), missed_.data() + at, hit_.data() + at);
-    }
+    for_touched([&](std::size_t line) {
+      const std::size_t rest = line / std::size_t(counts_.y);
+      const int z = int(rest % std::size_t(size_.z));
+      const Index3 brick{lower_.x + int(rest / std::size_t(size_.z)),
+                         lower_.y + int(line % std::size_t(counts_.y)), lower_.z + z / 8};
+      const std::size_t at = line * kLine;
+      visit(brick, 8 * (z % 8), missed_.data() + at, hit_.data() + at);
+    });
   }
 
   std::size_t memory_bytes() const { return 8 * (missed_.size() + hit_.size()) + touched_.size(); }
 
  private:
   struct Ray;
+  struct Marks;
   template <bool kInside>
   void walk(const Ray& ray, Index3 last, int steps_y, int steps_z);
-  void mark(std::int64_t row, int x0, int x1);
-  void touch(std::size_t word);
+  // In the order of their place; lines that were not touched are passed over by eights.
+  template <typename Visit>
+  void for_touched(Visit&& visit) const {
+    const std::size_t lines = std::size_t(plane_) / kLine * std::size_t(counts_.x);
+    for (std::size_t first = 0; first < lines; first += 8) {
+      std::uint64_t eight;  // counts_.z brings 8 lines each: always whole
+      std::memcpy(&eight, touched_.data() + first, sizeof eight);
+      if (eight == 0) continue;
+      for (std::size_t line = first; line < first + 8; ++line) {
+        if (touched_[line] != 0) visit(line);
+      }
+    }
+  }
   Index3 first_held(const Ray& ray, const BrickMap& map) const;
   bool grazes(const Ray& ray, Index3 voxel, const BrickMap& map) const;
 
@@ -56,7 +68,6 @@ class RayScan {
   std::int64_t plane_ = 0;      // words of all rows with the same 64 x
   std::vector<Word> missed_, hit_;     // ((x / 64) * size z + z) * size y + y
   std::vector<std::uint8_t> touched_;  // of each line
-  std::vector<std::uint32_t> lines_;
 };
 
 }  // namespace goshawk::map_server

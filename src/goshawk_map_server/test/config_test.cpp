@@ -28,7 +28,7 @@ TEST(Config, DefaultsAreValidAndEveryParameterIsDescribed) {
   Checker checker;
   describe(config, checker);
   EXPECT_TRUE(checker.all_valid);
-  EXPECT_EQ(checker.names.size(), 27U);
+  EXPECT_EQ(checker.names.size(), 37U);
 }
 
 TEST(Config, InflationIsRadiusPlusMarginAndTheBoxIsOnlyUsedOnDemand) {

@@ -150,8 +150,10 @@ TEST_F(Journal, IsWrittenAnewWhenMostOfItIsObsolete) {
   std::uint64_t version = 0;
   while (version < 40'000) {  // 120 MB, if nothing were given up
     std::vector<JournalBrick> batch = truth.batches[version % 3];
-    for (JournalBrick& brick : batch) newest[brick.corner] = brick, brick.raw[0] = version;
-    for (const JournalBrick& brick : batch) newest[brick.corner] = brick;
+    for (JournalBrick& brick : batch) {
+      brick.raw[0] = version;
+      newest[brick.corner] = brick;
+    }
     ASSERT_TRUE(journal.append(++version, batch));
     if (version % 500 == 0) largest = std::max(largest, std::filesystem::file_size(path_));
   }
@@ -197,6 +199,48 @@ TEST_F(Journal, OfALiveMapGivesTheMapBack) {
   source.voxels = voxels;
   const LiveMap restored = LiveMap::from_source(source, {}, growth).value();
   EXPECT_EQ(restored.grid().grown, map.grid().grown);
+}
+
+TEST_F(Journal, ABrickThatNoMapReachesIsDamage) {
+  JournalBrick brick = random_brick(random_, 1);
+  brick.corner.y = 1 << 30;
+  MapJournal journal = MapJournal::create(path_, kIdentity).value();
+  ASSERT_TRUE(journal.append(1, {&brick, 1}));
+  const JournalContent content = read_whole(map_server::testing::bytes_of(path_));
+  EXPECT_TRUE(content.bricks.empty());
+  EXPECT_EQ(content.damaged, 1);
+}
+
+// A window that moves leaves behind what the journal keeps.
+TEST_F(Journal, OfAMapThatFollowsCoversAllBricks) {
+  const GridGeometry geometry{Vec3(-0.4, 1.2, 0.0), 0.2, {70, 20, 12}};
+  RawVoxels window{geometry, BitGrid(geometry.size, true), BitGrid(geometry.size, false)};
+  window.known.set({3, 4, 5}, true);
+  window.occupied.set({3, 4, 5}, true);
+  window.known.set({9, 9, 9}, true);
+  JournalContent content;
+  JournalBrick far = random_brick(random_, 1);
+  far.corner = {640, -80, 24};
+  JournalBrick behind = far;
+  behind.corner = {-128, 6, 0};
+  for (const auto& brick : {far, behind}) content.bricks[brick.corner] = brick;
+  RawVoxels wide = content.widened(window, 100'000'000).value();
+  EXPECT_EQ(wide.known.count(), 2);
+  const auto is = [&](const BitGrid& bits, Index3 voxel) {  // counted from the frame's origin
+    const Vec3 first = (wide.geometry.origin_map / 0.2).array().round().matrix();
+    return bits.test({voxel.x - int(first.x()), voxel.y - int(first.y()), voxel.z - int(first.z())});
+  };
+  EXPECT_TRUE(is(wide.known, {1, 10, 5}) && is(wide.occupied, {1, 10, 5}));
+  EXPECT_TRUE(is(wide.known, {7, 15, 9}) && !is(wide.occupied, {7, 15, 9}));
+  content.write_into(wide);
+  for (const auto& brick : {far, behind}) {
+    for (int k = 0; k < 64 * 64; ++k) {
+      const int word = k / 64, bit = k % 64;
+      const Index3 voxel{brick.corner.x + bit, brick.corner.y + word % 8, brick.corner.z + word / 8};
+      ASSERT_EQ(is(wide.known, voxel), (brick.known[std::size_t(word)] >> bit & 1) != 0);
+    }
+  }
+  EXPECT_EQ(content.widened(window, 1000).code(), ErrorCode::map_too_large);
 }
 
 TEST_F(Journal, BricksBeyondTheMapAreLeftOut) {

@@ -48,6 +48,7 @@ Flown fly(const simulator::Config& config, const plant::PlantFactory& plant,
   tracker::Config tracking;
   tracking.max_tilt_rad = 1.2;
   tracking.min_thrust_n = 0.5;
+  tracking.require_map = false;
   auto tracker = tracker::Tracker::create(tracking).value();
   EXPECT_TRUE(vehicle.reset(committed.nominal().start().position, 0.0));
   Flown flown;

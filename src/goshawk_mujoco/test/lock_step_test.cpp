@@ -111,7 +111,8 @@ Flown fly(const std::string& plant, const std::vector<std::string>& parameters) 
   const auto context = runtime::Context::create(options).value();
   Pilot pilot(*context);
   const Stage navigator({"navigator", "--ros-args", "-p", "lock_step:=true"});
-  const Stage tracker({"tracker", "--ros-args", "-p", "lock_step:=true"});
+  const Stage tracker(
+      {"tracker", "--ros-args", "-p", "lock_step:=true", "-p", "require_map:=false"});
   const Stage simulator(plant_call);
   const auto begin = std::chrono::steady_clock::now();
   EXPECT_TRUE(pilot.fly(120.0));

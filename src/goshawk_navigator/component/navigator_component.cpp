@@ -7,6 +7,7 @@
 #include "goshawk/runtime/component.hpp"
 #include "goshawk/stage/intake.hpp"
 #include "goshawk/stage/map_subscription.hpp"
+#include "memory_file.hpp"
 
 namespace goshawk::navigator {
 namespace {
@@ -65,6 +66,17 @@ class Answers {
   std::uint64_t number_ = 0;
 };
 
+/// The same trajectory, by another clock.
+Result<CommittedTrajectory> begun_at(const CommittedTrajectory& committed, std::int64_t start_ns) {
+  return CommittedTrajectory::make({.id = committed.id(),
+                                    .nominal = committed.nominal(),
+                                    .stop = committed.stop(),
+                                    .start_time_ns = start_ns,
+                                    .map_version = committed.map_version(),
+                                    .yaw_rad = committed.yaw_rad(),
+                                    .yaw_curve = committed.yaw_curve()});
+}
+
 constexpr double kAlive_s = 0.5;  // the newest state again: the tracker lands without it
 
 /// A report can end a request, so it is heard from one process for each stage of the plan and for
@@ -97,10 +109,12 @@ class NavigatorComponent : public Component {
         }) {
     subscribe();
     node.every(0.02, [this] {
+      if (!resumed_) resume();
       navigator_.tick(node_.monotonic_ns());
       carry_out();
     });
-    publish(StateOrder{});
+    if (config_.memory_file.empty()) publish(StateOrder{});
+    if (config_.memory_file.empty() || node.monotonic_ns() > 0) resume();
     node.every(kAlive_s, [this] { reporter_.send(alive_, state_message_); });
     reporter_.ready("waits for a goal on goal_pose");
   }
@@ -142,13 +156,10 @@ class NavigatorComponent : public Component {
   }
 
   void on_goal(const geometry_msgs::msg::PoseStamped& m) {
-    Status status = conversions::check_frame(m.header(), conversions::kMapFrame, "a goal");
-    if (status) {
-      const auto& q = m.pose().orientation();
-      status =
-          navigator_.on_goal(conversions::from_msg(m.pose().position()),
-                             yaw_of(Quaternion(q.w(), q.x(), q.y(), q.z())), node_.monotonic_ns());
-    }
+    const auto goal = conversions::from_msg(m);
+    const Status status =
+        goal ? navigator_.on_goal(goal->position_map, goal->yaw_rad, node_.monotonic_ns())
+             : Status(goal.error());
     if (!status) {
       reporter_.fault(status.error());
       // The sender of this goal waits for its answer on navigator_state.
@@ -192,9 +203,57 @@ class NavigatorComponent : public Component {
     carry_out();
   }
 
+  // Where the navigator before this one ended, if there was one and its clock is known.
+  void resume() {
+    resumed_ = true;
+    if (config_.memory_file.empty()) return;
+    auto stored = read_memory(config_.memory_file);
+    if (!stored) reporter_.fault(stored.error());
+    if (!stored || stored->memory.state == State::idle) return publish(StateOrder{});
+    for (PublishedLeg& m : stored->legs) {
+      auto leg = conversions::from_msg(m);
+      if (leg) leg = begun_at(*leg, leg->start_time_ns() - to_wall_ns(0));
+      if (!leg) {
+        reporter_.fault(leg.error());
+        continue;
+      }
+      stored->memory.legs.push_back({.committed = *std::move(leg),
+                                     .brakes = m.nominal().implementation() == kBrakeName});
+      published_.push_back(std::move(m));
+    }
+    navigator_.resume(std::move(stored->memory), node_.monotonic_ns());
+    carry_out();
+  }
+
+  // Before anything is published: the navigator after this one then knows what others may have.
+  void remember() {
+    StoredMemory stored{.memory = navigator_.memory()};
+    for (const Leg& leg : stored.memory.legs) {
+      const auto at = std::ranges::find(published_, leg.id(), &id_of);
+      if (at != published_.end()) stored.legs.push_back(*at);
+    }
+    published_ = stored.legs;
+    stored.memory.legs.clear();
+    if (config_.memory_file.empty()) return;
+    const Status status = write_memory(config_.memory_file, stored);
+    if (!status) reporter_.complain(status.error());
+  }
+
+  static std::uint64_t id_of(const PublishedLeg& leg) { return leg.nominal().request().id(); }
+
   void carry_out() {
-    for (const Order& order : navigator_.take_orders()) {
-      std::visit([this](const auto& o) { publish(o); }, order);
+    const auto orders = navigator_.take_orders();
+    if (orders.empty()) return;
+    for (const Order& order : orders) {
+      if (const auto* commit = std::get_if<Commit>(&order)) published_.push_back(message_of(*commit));
+    }
+    const auto legs = published_;
+    remember();
+    for (const Order& order : orders) {
+      if (const auto* commit = std::get_if<Commit>(&order)) publish(*commit, legs);
+      if (const auto* request = std::get_if<PlanRequest>(&order)) publish(*request);
+      if (const auto* state = std::get_if<StateOrder>(&order)) publish(*state);
+      if (const auto* complaint = std::get_if<Complaint>(&order)) publish(*complaint);
     }
   }
 
@@ -211,16 +270,25 @@ class NavigatorComponent : public Component {
     reporter_.send(requests_, m);
   }
 
-  void publish(const Commit& commit) {
+  /// As it is published: the nominal part as its optimizer sent it.
+  PublishedLeg message_of(const Commit& commit) const {
     const CommittedTrajectory& committed = commit.trajectory;
+    const auto known = std::ranges::find(published_, committed.id(), &id_of);
+    if (known != published_.end()) return *known;
     const auto* answer = answers_.find(commit.answer);
-    msg::CommittedTrajectory m;
+    PublishedLeg m;
     m.header(conversions::make_header(node_.now_ns()));
     m.nominal(answer != nullptr ? answer->message : nominal_of(committed));
     conversions::fill_msg(committed, m);
     m.start_time(conversions::to_stamp(to_wall_ns(committed.start_time_ns())));
-    reporter_.send(commits_, m);
-    reporter_.answered(committed.id(), {.wire_ns = answer != nullptr ? answer->wire_ns : 0});
+    return m;
+  }
+
+  void publish(const Commit& commit, const std::vector<PublishedLeg>& legs) {
+    const std::uint64_t id = commit.trajectory.id();
+    reporter_.send(commits_, *std::ranges::find(legs, id, &id_of));
+    const auto* answer = answers_.find(commit.answer);
+    reporter_.answered(id, {.wire_ns = answer != nullptr ? answer->wire_ns : 0});
   }
 
   /// Of a trajectory that is no stage's answer.
@@ -268,6 +336,8 @@ class NavigatorComponent : public Component {
   Publisher<msg::NavigatorState> states_;
   Publisher<msg::NavigatorState> alive_;
   Answers answers_;
+  std::vector<PublishedLeg> published_;  // of what is flown, by start
+  bool resumed_ = false;
   msg::NavigatorState state_message_;
   MapSubscription map_;
 };

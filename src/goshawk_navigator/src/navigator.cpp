@@ -48,6 +48,7 @@ void Navigator::resume(Memory memory, std::int64_t now_ns) {
     schedule_.add(std::move(leg));
   }
   next_id_ = std::max(next_id_, newest_id_ + 1);
+  if (memory.open && schedule_.moves(now_ns)) pursuit_.revoked_ns = now_ns;
   enter(memory.state, now_ns,
         {ErrorCode::ok, "going on where the navigator before this one ended"});
 }

@@ -43,7 +43,7 @@ std::optional<std::int64_t> Navigator::Open::too_late_ns() const {
 // Where the next plan begins: a little ahead on what is flown, or at rest.
 void Navigator::plan(std::int64_t now_ns) {
   if (!pursuit_.open || open_ || now_ns < pursuit_.retry_ns) return;
-  if (schedule_.moves(now_ns)) return ask(start_in_flight(now_ns), now_ns);
+  if (schedule_.moves(now_ns) && odometry_ns_) return ask(start_in_flight(now_ns), now_ns);
   // Odometry that was only just discovered, a trajectory that is just ending, a vehicle that brakes
   // by itself: all of these pass.
   if (odometry_is_fresh(now_ns) && at_rest()) return ask(start_at_rest(now_ns), now_ns);

@@ -11,7 +11,7 @@ CommittedTrajectory committed(Trajectory trajectory, std::vector<Polytope> polyt
                               double a_max_m_s2 = 6.0) {
   const FlatState start = trajectory.sample(0.0);
   const FlatState end = trajectory.sample(trajectory.duration_s());
-  const Limits limits{.v_max_m_s = 2.0 * kFast_m_s, .a_max_m_s2 = a_max_m_s2};
+  const Limits limits{.v_max_m_s = 3.0 * kFast_m_s, .a_max_m_s2 = a_max_m_s2};
   auto certified =
       certify(std::move(trajectory), std::move(polytopes), limits, start, end).value();
   return CommittedTrajectory::make(
@@ -93,7 +93,7 @@ TEST(Brake, LeavesATrajectoryWithAStopPartAlongThatPart) {
   const FlatState end{.position = Vec3(6, 0, 1)};
   const Trajectory nominal{{BezierPiece::between(start, end, 8.0)}};
   const std::vector room{Polytope::box(Vec3(-1, -1, 0), Vec3(7, 1, 2))};
-  const Limits limits{.v_max_m_s = 4.0, .a_max_m_s2 = 6.0};
+  const Limits limits{.v_max_m_s = 6.0, .a_max_m_s2 = 6.0};
   const FlatState left = nominal.sample(3.0);
   const FlatState rest{.position = left.position + Vec3(2.0, 0, 0)};
   const Trajectory stop{{BezierPiece::between(left, rest, 3.0)}};

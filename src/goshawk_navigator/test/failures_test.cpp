@@ -166,5 +166,62 @@ TEST(Navigator, AVehicleThatEndsElsewhereHasNotArrivedAndIsSentAgain) {
   EXPECT_EQ(h.last().reason.code, ErrorCode::tracking_lost);
 }
 
+/// Another navigator with the memory of this one, in the same flight.
+void die_and_come_back(Harness& h) {
+  Memory memory = h.navigator.memory();
+  h.navigator = Navigator(wide(), 1'000);
+  h.navigator.on_map(std::make_shared<const VoxelGrid>(free_map()), h.now);
+  h.commits.clear();
+  h.navigator.resume(std::move(memory), h.now);
+  h.take();
+}
+
+TEST(Navigator, AfterItsDeathGoesOnWithWhatIsFlown) {
+  Harness h;
+  h.goal(kGoal);
+  h.answer();
+  h.pass(1.5);
+  die_and_come_back(h);
+  EXPECT_EQ(h.last().state, State::flying);
+  EXPECT_EQ(h.last().id, h.plans[0].id);
+  EXPECT_EQ(h.last().flown_id, h.plans[0].id);
+  ASSERT_EQ(h.commits.size(), 1u) << "again, for a tracker that has not had it";
+  EXPECT_EQ(h.commits[0].id(), h.plans[0].id);
+  h.pass(4.0);
+  EXPECT_EQ(h.last().state, State::arrived);
+  EXPECT_EQ(h.plans.size(), 1u);
+}
+
+TEST(Navigator, AfterItsDeathPlansForTheGoalThatNothingLedToYet) {
+  Harness h;
+  h.goal(kGoal);
+  h.answer();
+  h.pass(1.5);
+  h.goal(Vec3(2, 3, 1));
+  die_and_come_back(h);
+  EXPECT_EQ(h.plans.size(), 2u) << "not before it knows where the vehicle is";
+  h.pass(0.1);
+  ASSERT_EQ(h.plans.size(), 3u);
+  EXPECT_GE(h.plans[2].id, 1'000u);
+  EXPECT_EQ(h.plans[2].goal.position, Vec3(2, 3, 1));
+  EXPECT_GT(h.plans[2].start.velocity.norm(), 0.5);
+  h.answer();
+  h.pass(6.0);
+  EXPECT_EQ(h.last().state, State::arrived);
+}
+
+TEST(Navigator, AfterItsDeathAtTheGoalItIsStillThere) {
+  Harness h;
+  h.goal(kGoal);
+  h.answer();
+  h.pass(6.0);
+  die_and_come_back(h);
+  EXPECT_EQ(h.last().state, State::arrived);
+  EXPECT_TRUE(h.commits.empty()) << "it has ended";
+  h.pass(1.0);
+  EXPECT_EQ(h.last().state, State::arrived);
+  EXPECT_EQ(h.plans.size(), 1u);
+}
+
 }  // namespace
 }  // namespace goshawk::navigator

@@ -113,11 +113,19 @@ Index3 Components::place(std::size_t brick) const {
           int(row / std::size_t(count_.y))};
 }
 
-std::uint64_t Components::free_row(Index3 brick, int row) const {
-  const int y = kBrickSide * brick.y + row % kBrickSide;
-  const int z = kBrickSide * brick.z + row / kBrickSide;
-  if (y >= held_.size().y || z >= held_.size().z) return 0;
-  return ~held_.row(y, z)[brick.x] & (brick.x + 1 == count_.x ? last_word_ : ~std::uint64_t{0});
+// Rows outside the map are not free.
+Components::Rows Components::free_rows(Index3 brick) const {
+  Rows rows{};
+  const std::uint64_t inside = brick.x + 1 == count_.x ? last_word_ : ~std::uint64_t{0};
+  const int y0 = kBrickSide * brick.y, z0 = kBrickSide * brick.z;
+  const int y_rows = std::min(kBrickSide, held_.size().y - y0);
+  const int z_rows = std::min(kBrickSide, held_.size().z - z0);
+  for (int z = 0; z < z_rows; ++z) {
+    for (int y = 0; y < y_rows; ++y) {
+      rows[std::size_t(kBrickSide * z + y)] = ~held_.row(y0 + y, z0 + z)[brick.x] & inside;
+    }
+  }
+  return rows;
 }
 
 bool Components::advance(const BitGrid& blocked, int bricks) {
@@ -182,10 +190,9 @@ void Components::mark(Index3 brick) {
 }
 
 void Components::label(Index3 at, Brick& brick) {
-  std::array<std::uint64_t, kRows> free;
+  const Rows free = free_rows(at);
   runs_.clear();
   for (int row = 0; row < kRows; ++row) {
-    free[std::size_t(row)] = free_row(at, row);
     brick.first_run[std::size_t(row)] = std::uint16_t(runs_.size());
     for (Runs run(free[std::size_t(row)]); !run.at_end(); run.next()) {
       runs_.push_back(std::uint16_t(runs_.size()));
@@ -210,19 +217,22 @@ void Components::label(Index3 at, Brick& brick) {
 
 void Components::link(Index3 at, Brick& brick) {
   brick.links.clear();
+  const Rows own_rows = free_rows(at);
   for (std::size_t s = 0; s < sides_.size(); ++s) {
     const Side& side = sides_[s];
     const Index3 there = at + side.offset;
     if (!contains(there)) continue;
     const Brick& other = bricks_[number(there)];
+    const Rows other_rows = free_rows(there);
     for (const RowPair& pair : side.rows) {
+      const std::uint64_t a = own_rows[pair.own], b = other_rows[pair.other];
+      if (a == 0 || b == 0) continue;
       const auto touch = [&](int i, int j) {
         const Link link{brick.component[std::size_t(brick.first_run[pair.own] + i)],
                         other.component[std::size_t(other.first_run[pair.other] + j)],
                         std::uint8_t(s)};
         if (brick.links.empty() || !(brick.links.back() == link)) brick.links.push_back(link);
       };
-      const std::uint64_t a = free_row(at, pair.own), b = free_row(there, pair.other);
       const int last_a = brick.first_run[pair.own + 1U] - brick.first_run[pair.own] - 1;
       const int last_b = other.first_run[pair.other + 1U] - other.first_run[pair.other] - 1;
       if (side.offset.x == 0) {
@@ -260,7 +270,8 @@ std::uint32_t Components::root_of(Index3 voxel) const {
   const Brick& brick = bricks_[number(at)];
   const int row = voxel.z % kBrickSide * kBrickSide + voxel.y % kBrickSide;
   std::size_t run = brick.first_run[std::size_t(row)];
-  for (Runs runs(free_row(at, row)); runs.end() <= voxel.x % 64; runs.next()) ++run;
+  const std::uint64_t free = ~held_.row(voxel.y, voxel.z)[at.x];
+  for (Runs runs(free); runs.end() <= voxel.x % 64; runs.next()) ++run;
   return roots_[brick.base + brick.component[run]];
 }
 

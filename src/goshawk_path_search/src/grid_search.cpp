@@ -1,419 +1,63 @@
 #include "goshawk/path_search/grid_search.hpp"
 
-#include <bit>
-#include <cmath>
-#include <limits>
-#include <string>
+#include <stdexcept>
 
-#include "goshawk/path_search/bucket_queue.hpp"
-#include "goshawk/path_search/components.hpp"
-#include "goshawk/path_search/labels.hpp"
-#include "goshawk/path_search/move_cost.hpp"
-#include "goshawk/path_search/move_rules.hpp"
-#include "goshawk/path_search/neighbour_labels.hpp"
-#include "goshawk/path_search/obstacle_bits.hpp"
-#include "goshawk/path_search/successor_order.hpp"
+#include "best_first_search.hpp"
 
 namespace goshawk::path_search {
 namespace {
 
-using Node = ObstacleBits::Node;
+using best_first::GridSearch;
 
-constexpr int kExpansionsBetweenLooks = 1024;  // at the clock and the stop token
+// From so many voxels on, a plain table's first touch of a page costs more than tiles do.
+constexpr std::int64_t kTilesFromVoxels = std::int64_t{1} << 20;
 
-// The components of a new map are found beside the search: so many bricks at the first look, twice
-// as many at the second, three times at the third. That costs a short search little, and a
-// hopeless one ends soon in a map of any size.
-constexpr int kBricksAtFirstLook = 32;
-
-// Moves put off cost a push and a pop: not worth it for so few of them, at the first visit and
-// when they were put off before.
-constexpr int kFewAtFirst = 1;
-constexpr int kFewLater = 8;
-
-// To look at the labels of all neighbours at once pays where most of them are known: not in a
-// search that ends soon.
-constexpr std::int64_t kExpansionsUnfiltered = 1024;
-
-// By direction_of().
-constexpr BlockMask kStraightMoves = 0x415410;
-constexpr BlockMask kDiagonalMoves = 0x2aa8aaa;
-
-// The queue hands out the newest of equals, so the moves that the canonical order wants first,
-// those along most axes, are made last.
-int next_in_order(BlockMask moves) {
-  const BlockMask straight = moves & kStraightMoves, diagonal = moves & kDiagonalMoves;
-  return std::countr_zero(straight != 0 ? straight : diagonal != 0 ? diagonal : moves);
-}
-
-bool at_most(int count, BlockMask moves) {
-  for (int k = 0; k < count; ++k) moves &= moves - 1;
-  return moves == 0;
-}
-
-/// Heuristic: a functor of move_cost.hpp. kJumps: canonical successors and straight jumps.
-template <typename Heuristic, bool kJumps>
-class GridSearch final : public GridPlanner {
+/// JA* with the labels that suit the size of the map.
+class JaStar final : public GridPlanner {
  public:
-  GridSearch(std::string_view name, CornerRule rule)
-      : name_(name), rule_(rule), rules_(move_rules(rule)), components_(rule) {}
+  explicit JaStar(CornerRule rule) : rule_(rule), planner_(make_jastar(rule, false)) {}
 
-  using GridPlanner::search;
-  std::string_view name() const override { return name_; }
+  std::string_view name() const override { return planner_->name(); }
   using GridPlanner::set_map;
-  void set_map(const BitGrid& blocked, const BitGrid* known) override;
-  Status search(const GridQuery& query, VoxelPath& path) override;
+  void set_map(const BitGrid& blocked, const BitGrid* known) override {
+    const bool tiled = blocked.voxels() >= kTilesFromVoxels;
+    if (tiled != tiled_) planner_ = make_jastar(rule_, tiled);
+    tiled_ = tiled;
+    planner_->set_map(blocked, known);
+  }
+  using GridPlanner::search;
+  Status search(const GridQuery& query, VoxelPath& path) override {
+    return planner_->search(query, path);
+  }
 
  private:
-  static constexpr bool kOctile = std::is_same_v<Heuristic, OctileHeuristic>;
-
-  Status check(const GridQuery& query) const;
-  void prepare(const GridQuery& query);
-  Status run(const StopSignal& stop);
-  bool any_goal_is_joined() const;
-  bool look_for_a_way();
-  void expand(Node node, Cost key);
-  [[gnu::noinline]] void expand_rest(Node node, BlockMask moves);
-  [[gnu::always_inline]] void make_moves(Node node, Index3 at, Label label, Cost key,
-                                         BlockMask moves, BlockMask block, int few);
-  void expand_all(Node node, Index3 at, Label label, BlockMask moves, BlockMask block);
-  void reach(Node node, Label label, Cost key);
-  int jump(const Move& move, Index3 from, BlockMask block) const;
-  int jump_ends(const Move& move, Index3 from, Index3 goal, int count) const;
-  Cost estimate(Index3 at) const;
-  bool is_goal(Node node) const;
-  void trace(VoxelPath& path) const;
-
-  std::string_view name_;
   CornerRule rule_;
-  const MoveRules& rules_;
-  Error map_error_{ErrorCode::no_map, "no map yet: wait for one, or load one, before planning"};
-  bool has_map_ = false;
-  ObstacleBits bits_;
-  Components components_;
-  LabelTable labels_;
-  BucketQueue queue_;
-  SuccessorOrder order_;
-
-  // Of the query at work.
-  struct Goal {
-    Index3 cell;
-    Node node;
-    std::size_t index;  // in the query
-  };
-  Index3 start_;
-  std::vector<Goal> goals_;  // without repetition
-  Goal goal_{};              // the only one, or the one reached
-  Cost bound_ = 0;           // only paths below it are of interest: the best so far
-  bool reached_ = false;
-  bool joined_ = false;  // start and goal, by components_
-  int looks_ = 0;
-  bool too_long_ = false;  // something was left out because its cost does not fit a label
-  Counters counters_;
+  std::unique_ptr<GridPlanner> planner_;
+  bool tiled_ = false;
 };
 
-Error too_large(Index3 size) {
-  return fail(ErrorCode::map_too_large,
-              "a map of " + to_text(size) +
-                  " voxels is too large to search (8 bytes a voxel, at "
-                  "most 2^32 voxels): use a coarser resolution or a smaller box");
-}
-
-template <typename Heuristic, bool kJumps>
-void GridSearch<Heuristic, kJumps>::set_map(const BitGrid& blocked, const BitGrid*) {
-  const bool same_size = has_map_ && bits_.size() == blocked.size();
-  if (!same_size) {
-    has_map_ = false;
-    if (blocked.empty()) {
-      map_error_ = fail(ErrorCode::no_map, "the map is empty: load one with at least one voxel");
-      return;
-    }
-    const std::int64_t nodes = ObstacleBits::nodes_for(blocked.size());
-    if (nodes == 0 || !labels_.resize(nodes)) {
-      map_error_ = too_large(blocked.size());
-      return;
-    }
-  }
-  if (bits_.assign(blocked)) components_.forget();
-  has_map_ = true;
-}
-
-template <typename Heuristic, bool kJumps>
-Status GridSearch<Heuristic, kJumps>::check(const GridQuery& query) const {
-  if (!has_map_) return map_error_;
-  return check_ends(query, bits_.size(), [this](Index3 i) { return bits_.blocked(bits_.node(i)); });
-}
-
-template <typename Heuristic, bool kJumps>
-Status GridSearch<Heuristic, kJumps>::search(const GridQuery& query, VoxelPath& path) {
-  path.clear();
-  if (auto status = check(query); !status) return status;
-  if (!labels_.start_query()) return too_large(bits_.size());
-  prepare(query);
-  if (components_.ready() && !any_goal_is_joined()) return no_way(query);
-  Status ended = run(query.stop);
-  path.counters = counters_;
-  if (!ended) return ended;
-  if (reached_) {
-    path.goal = goal_.index;
-    trace(path);
-    return success();
-  }
-  if (too_long_) {
-    return fail(ErrorCode::solver_failed,
-                "every path is longer than four million voxels, which this search does not "
-                "follow: use a coarser resolution");
-  }
-  return no_way(query);
-}
-
-template <typename Heuristic, bool kJumps>
-void GridSearch<Heuristic, kJumps>::prepare(const GridQuery& query) {
-  start_ = query.start.cell;
-  goals_.clear();
-  for (std::size_t k = 0; k < query.goals.size(); ++k) {
-    const Index3 cell = query.goals[k].cell;
-    if (!is_goal(bits_.node(cell))) goals_.push_back({cell, bits_.node(cell), k});
-  }
-  goal_ = goals_.front();
-  // Keys never fall below the first one if the heuristic is consistent; the Euclidean one is so
-  // but for rounding, the Manhattan one is not.
-  queue_.clear(kOctile ? estimate(start_) : 0);
-  counters_ = {};
-  reached_ = too_long_ = false;
-  joined_ = components_.ready();
-  looks_ = 0;
-  bound_ = kMaxCost - kMoveCost[3] * ObstacleBits::kWindow;
-}
-
-// A*, with nodes expanded again when a better way to them appears (which only happens within the
-// width of a bucket, or under a heuristic that is not consistent), until nothing that is left
-// can beat the way found to the goal.
-template <typename Heuristic, bool kJumps>
-Status GridSearch<Heuristic, kJumps>::run(const StopSignal& stop) {
-  const Node start = bits_.node(start_);
-  reach(start, LabelTable::extend(labels_.root(), 0, kNoDirection), estimate(start_));
-  int left = kExpansionsBetweenLooks;
-  while (queue_.advance()) {
-    const Cost lowest = queue_.lowest_key();
-    if (lowest >= bound_) break;
-    const BucketQueue::Entry entry = queue_.pop();
-    // A node whose label has improved since is expanded by its newer entry.
-    const bool expanded = (labels_[entry.node] & kExpanded) != 0;
-    if (lowest + entry.rest >= bound_ || expanded != (entry.note != 0)) continue;
-    if (--left == 0) {
-      if (auto status = stop.check(); !status) return status;
-      left = kExpansionsBetweenLooks;
-      if (!joined_ && !look_for_a_way()) break;
-    }
-    if (expanded) {
-      expand_rest(entry.node, entry.note);
-    } else {
-      expand(entry.node, lowest + entry.rest);
-    }
-  }
-  return success();
-}
-
-template <typename Heuristic, bool kJumps>
-bool GridSearch<Heuristic, kJumps>::any_goal_is_joined() const {
-  return std::any_of(goals_.begin(), goals_.end(),
-                     [this](const Goal& goal) { return components_.joined(start_, goal.cell); });
-}
-
-// A share of the work on the components. @return false once they say that there is no way
-template <typename Heuristic, bool kJumps>
-bool GridSearch<Heuristic, kJumps>::look_for_a_way() {
-  if (!components_.advance(bits_.map(), kBricksAtFirstLook * ++looks_)) return true;
-  joined_ = any_goal_is_joined();
-  return joined_;
-}
-
-// @param key g + estimate of the node
-template <typename Heuristic, bool kJumps>
-void GridSearch<Heuristic, kJumps>::expand(Node node, Cost key) {
-  Label& label = labels_[node];
-  label |= kExpanded;
-  ++counters_.expanded;
-  const BlockMask block = bits_.block(node);
-  BlockMask moves = kJumps ? rules_.successors(LabelTable::direction(label), block)
-                           : MoveRules::allowed(rule_, block);
-  if (counters_.expanded > kExpansionsUnfiltered)
-    moves &= improved_neighbours(labels_, bits_, node);
-  if (moves == 0) return;
-  const Index3 at = bits_.index(node);
-  if (!kOctile || goals_.size() > 1) return expand_all(node, at, label, moves, block);
-  make_moves(node, at, label, key, moves, block, kFewAtFirst);
-}
-
-// @param moves that were put off when the node was expanded
-template <typename Heuristic, bool kJumps>
-void GridSearch<Heuristic, kJumps>::expand_rest(Node node, BlockMask moves) {
-  const Label label = labels_[node];
-  moves &= improved_neighbours(labels_, bits_, node);
-  if (moves == 0) return;
-  const BlockMask block = kJumps ? bits_.block(node) : 0;
-  const Index3 at = bits_.index(node);
-  const Cost key = labels_.cost(label) + OctileHeuristic{}(at, goal_.cell);
-  make_moves(node, at, label, key, moves, block, kFewLater);
-}
-
-// With one goal and the octile estimate: the moves that raise the key least now, the others when
-// their turn comes, unless they are so few that coming back costs more.
-template <typename Heuristic, bool kJumps>
-inline void GridSearch<Heuristic, kJumps>::make_moves(Node node, Index3 at, Label label, Cost key,
-                                                      BlockMask moves, BlockMask block, int few) {
-  const SuccessorOrder::Case& order = order_.of(goal_.cell - at);
-  std::size_t level = 0;
-  BlockMask now = moves & order.moves[0];
-  while (now == 0 && level + 1 < SuccessorOrder::kLevels) now = moves & order.moves[++level];
-  BlockMask later = moves & ~now;
-  if (at_most(level == 0 ? few : kFewLater, later)) {
-    now = moves;
-  } else {
-    do ++level;
-    while ((later & order.moves[level]) == 0);
-    const Cost later_key = key + order.least[level];
-    if (later_key < bound_) {
-      queue_.push(node, later_key, later);
-    } else {
-      too_long_ |= !reached_;
-    }
-  }
-  while (now != 0) {
-    const int d = kJumps ? next_in_order(now) : std::countr_zero(now);
-    now &= ~(BlockMask{1} << d);
-    const Move& move = kMoves[std::size_t(d)];
-    const int count = kJumps ? jump(move, at, block) : 1;
-    if (count <= 0) continue;
-    const Node next = Node(node + count * bits_.offset(d));
-    const Label reached = LabelTable::extend(label, count * move.cost, d);
-    if (count == 1) {
-      reach(next, reached, key + order.rise[std::size_t(d)]);
-    } else {
-      const Index3 to{at.x + count * move.step.x, at.y + count * move.step.y,
-                      at.z + count * move.step.z};
-      reach(next, reached, labels_.cost(reached) + OctileHeuristic{}(to, goal_.cell));
-    }
-  }
-}
-
-template <typename Heuristic, bool kJumps>
-void GridSearch<Heuristic, kJumps>::expand_all(Node node, Index3 at, Label label, BlockMask moves,
-                                               BlockMask block) {
-  for (; moves != 0; moves &= moves - 1) {
-    const int d = std::countr_zero(moves);
-    const Move& move = kMoves[std::size_t(d)];
-    const int count = kJumps ? jump(move, at, block) : 1;
-    if (count <= 0) continue;
-    const Index3 to{at.x + count * move.step.x, at.y + count * move.step.y,
-                    at.z + count * move.step.z};
-    const Label reached = LabelTable::extend(label, count * move.cost, d);
-    reach(Node(node + count * bits_.offset(d)), reached, labels_.cost(reached) + estimate(to));
-  }
-}
-
-template <typename Heuristic, bool kJumps>
-Cost GridSearch<Heuristic, kJumps>::estimate(Index3 at) const {
-  Cost least = Heuristic{}(at, goals_.front().cell);
-  for (std::size_t k = 1; k < goals_.size(); ++k) {
-    least = std::min(least, Heuristic{}(at, goals_[k].cell));
-  }
-  return least;
-}
-
-template <typename Heuristic, bool kJumps>
-bool GridSearch<Heuristic, kJumps>::is_goal(Node node) const {
-  for (const Goal& goal : goals_) {
-    if (goal.node == node) return true;
-  }
-  return false;
-}
-
-// How many moves of this kind make one edge of the search; 0 or less for a dead end.
-template <typename Heuristic, bool kJumps>
-int GridSearch<Heuristic, kJumps>::jump(const Move& move, Index3 from, BlockMask block) const {
-  if (move.axis < 0) return 1;
-  // Where the ring around the next voxel differs from the one here, a jump would mostly end there.
-  if (MoveRules::ring_changes(move, block)) return 1;
-  int count = bits_.straight_jump(rule_, move.axis, move.sign, from);
-  for (const Goal& goal : goals_) count = jump_ends(move, from, goal.cell, count);
-  return count;
-}
-
-// The goal ends a jump, too.
-template <typename Heuristic, bool kJumps>
-int GridSearch<Heuristic, kJumps>::jump_ends(const Move& move, Index3 from, Index3 goal,
-                                             int count) const {
-  const Index3 left = goal - from;
-  const int along = move.sign * (move.axis == 0 ? left.x : move.axis == 1 ? left.y : left.z);
-  const bool in_line = std::abs(left.x) + std::abs(left.y) + std::abs(left.z) == along;
-  return in_line && along > 0 && along <= std::abs(count) ? along : count;
-}
-
-template <typename Heuristic, bool kJumps>
-void GridSearch<Heuristic, kJumps>::reach(Node node, Label label, Cost key) {
-  if (key >= bound_) {
-    too_long_ |= !reached_;
-    return;
-  }
-  Label& held = labels_[node];
-  if (!LabelTable::improves(label, held)) return;
-  held = label;
-  ++counters_.generated;
-  for (const Goal& goal : goals_) {
-    if (node != goal.node) continue;
-    goal_ = goal;
-    bound_ = labels_.cost(label);
-    reached_ = true;
-    return;
-  }
-  queue_.push(node, key, 0);
-}
-
-// Back from the goal against the directions of arrival. Voxels inside a jump have no label that
-// fits; the first one behind whose label accounts for the cost is where the jump began.
-template <typename Heuristic, bool kJumps>
-void GridSearch<Heuristic, kJumps>::trace(VoxelPath& path) const {
-  Node node = goal_.node;
-  Index3 at = goal_.cell;
-  Label label = labels_[node];
-  Cost cost = labels_.cost(label);
-  std::array<std::int64_t, 4> moves{};
-  path.cells.push_back(at);
-  while (!(at == start_)) {
-    const int d = LabelTable::direction(label);
-    const auto axes = std::size_t(axes_changed(d));
-    at = at - step_of(d);
-    node = Node(node - bits_.offset(d));
-    cost -= kMoveCost[axes];
-    ++moves[axes];
-    path.cells.push_back(at);
-    const Label held = labels_[node];
-    if (labels_.is_current(held) && labels_.cost(held) <= cost) {
-      label = held;
-      cost = labels_.cost(held);
-    }
-  }
-  std::reverse(path.cells.begin(), path.cells.end());
-  path.cost_voxels =
-      double(moves[1]) + double(moves[2]) * std::sqrt(2.0) + double(moves[3]) * std::sqrt(3.0);
-}
-
 }  // namespace
+
+std::unique_ptr<GridPlanner> make_jastar(CornerRule rule, bool tiled) {
+  if (tiled)
+    return std::make_unique<GridSearch<OctileHeuristic, true, TiledLabels>>("jastar", rule);
+  return std::make_unique<GridSearch<OctileHeuristic, true, LabelTable>>("jastar", rule);
+}
 
 std::unique_ptr<GridPlanner> make_grid_search(Planner planner, CornerRule rule) {
   switch (planner) {
     case Planner::jastar:
-      return std::make_unique<GridSearch<OctileHeuristic, true>>("jastar", rule);
+      return std::make_unique<JaStar>(rule);
     case Planner::astar:
-      return std::make_unique<GridSearch<OctileHeuristic, false>>("astar", rule);
+      return std::make_unique<GridSearch<OctileHeuristic, false, LabelTable>>("astar", rule);
     case Planner::astar_euclidean:
-      return std::make_unique<GridSearch<EuclideanHeuristic, false>>("astar_euclidean", rule);
+      return std::make_unique<GridSearch<EuclideanHeuristic, false, LabelTable>>("astar_euclidean",
+                                                                                 rule);
     case Planner::astar_manhattan:
-      return std::make_unique<GridSearch<ManhattanHeuristic, false>>("astar_manhattan", rule);
+      return std::make_unique<GridSearch<ManhattanHeuristic, false, LabelTable>>("astar_manhattan",
+                                                                                 rule);
     case Planner::dijkstra:
-      return std::make_unique<GridSearch<ZeroHeuristic, false>>("dijkstra", rule);
+      return std::make_unique<GridSearch<ZeroHeuristic, false, LabelTable>>("dijkstra", rule);
     default:
       throw std::invalid_argument("make_grid_search() of a planner that samples");
   }

@@ -4,7 +4,7 @@ namespace goshawk::path_search {
 
 BlockMask improved_neighbours(const LabelTable& labels, const ObstacleBits& bits,
                               ObstacleBits::Node node) {
-  const Label* held = labels.at(node);
+  const Label* held = labels.around(node);
   const Label straight = LabelTable::extend(*held, kMoveCost[1], 0);
   const Label diagonal = LabelTable::extend(*held, kMoveCost[2], 0);
   const Label triagonal = LabelTable::extend(*held, kMoveCost[3], 0);

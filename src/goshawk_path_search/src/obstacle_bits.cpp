@@ -7,46 +7,49 @@
 namespace goshawk::path_search {
 namespace {
 
-// 64 bits from position p on, of which the lowest 57 are good.
-std::uint64_t ahead(const char* bytes, std::int64_t p) {
-  std::uint64_t word;
-  std::memcpy(&word, bytes + (p >> 3), sizeof word);
-  return word >> (p & 7);
+// So many changed voxels, at most one in this many words of the map, are forgotten one by one.
+constexpr std::int64_t kWordsAChange = 64;
+
+// Of the words that say where jumps stop: they begin 64 bits before the copy, for a window that
+// ends near its beginning.
+std::size_t stop_word(std::int64_t position) {
+  return std::size_t((position >> 6) + 1);
 }
 
-// 64 bits up to position p, which becomes bit 63; the highest 57 are good.
-std::uint64_t behind(const char* bytes, std::int64_t p) {
-  std::uint64_t word;
-  std::memcpy(&word, bytes + (p >> 3) - 7, sizeof word);
-  return word << (7 - (p & 7));
-}
-
-// The eight rows around a scanned one, and the scanned one itself.
+// 64 voxels of the nine rows around and with a scanned one, and of the same rows one voxel on.
 struct Rows {
   std::uint64_t own;
   std::uint64_t side[4];    // share a face with the own row
   std::uint64_t corner[4];  // corner k lies between sides k and (k + 1) % 4
 };
 
-// Voxels at which a forced neighbour may exist. `next` gives each voxel the bit of the voxel
-// ahead of it, `last` that of the voxel before.
-template <typename Next, typename Last>
-std::uint64_t forced(CornerRule rule, const Rows& r, Next next, Last last) {
+// Voxels at which a forced neighbour may exist, by the rows here, before and after in the
+// direction of the jump.
+std::uint64_t forced(CornerRule rule, const Rows& last, const Rows& here, const Rows& next) {
   std::uint64_t found = 0;
-  if (rule == CornerRule::squeeze) {
-    // A blocked voxel beside, a free one ahead of that.
-    for (const std::uint64_t n : r.side) found |= n & ~next(n);
-    for (const std::uint64_t n : r.corner) found |= n & ~next(n);
-    return found;
-  }
-  // A free voxel beside, a blocked one before that.
-  for (const std::uint64_t n : r.side) found |= last(n) & ~n;
-  // Past the end of a single edge, only the triagonal move is new: its whole box must be free.
   for (int k = 0; k < 4; ++k) {
-    const std::uint64_t here = r.side[k] | r.side[(k + 1) % 4] | r.corner[k];
-    found |= last(r.corner[k]) & ~(here | next(here) | next(r.own));
+    if (rule == CornerRule::squeeze) {
+      // A blocked voxel beside, a free one ahead of that.
+      found |= here.side[k] & ~next.side[k];
+      found |= here.corner[k] & ~next.corner[k];
+      continue;
+    }
+    // A free voxel beside, a blocked one before that.
+    found |= last.side[k] & ~here.side[k];
+    // Past the end of a single edge, only the triagonal move is new: its whole box must be free.
+    const int l = (k + 1) % 4;
+    found |= last.corner[k] & ~(here.side[k] | here.side[l] | here.corner[k] | next.side[k] |
+                                next.side[l] | next.corner[k] | next.own);
   }
   return found;
+}
+
+template <typename Copy>
+Rows rows_at(const Copy& copy, std::int64_t p) {
+  const std::int64_t a = copy.stride_u, b = copy.stride_v;
+  return {copy.from(p),
+          {copy.from(p + a), copy.from(p + b), copy.from(p - a), copy.from(p - b)},
+          {copy.from(p + a + b), copy.from(p + b - a), copy.from(p - a - b), copy.from(p + a - b)}};
 }
 
 }  // namespace
@@ -82,14 +85,16 @@ void ObstacleBits::clear(Copy& copy, int u_size, int v_size, int w_size) {
   copy.stride_u = std::int64_t{u_size} + 1;
   copy.stride_v = copy.stride_u * (std::int64_t{v_size} + 2);
   const std::int64_t bits = copy.stride_v * (std::int64_t{w_size} + 2) + copy.stride_u + 2;
-  copy.words.assign(std::size_t(bits / 64) + 4, ~std::uint64_t{0});
+  copy.words.assign(std::size_t(bits / 64) + 2 * kSpare + 1, ~std::uint64_t{0});
+  copy.ahead.resize(std::size_t(bits / 64) + 4);
+  copy.behind.resize(std::size_t(bits / 64) + 4);
   for (int w = 0; w < w_size; ++w) {
     for (int v = 0; v < v_size; ++v) {
       std::int64_t p = position(copy, 0, v, w);
       for (std::int64_t left = u_size; left > 0;) {
         const std::int64_t shift = p & 63, count = std::min(left, 64 - shift);
         const std::uint64_t ones = ~std::uint64_t{0} >> (64 - count);
-        copy.words[std::size_t(p >> 6) + 1] &= ~(ones << shift);
+        copy.words[std::size_t(p >> 6) + kSpare] &= ~(ones << shift);
         p += count;
         left -= count;
       }
@@ -100,11 +105,13 @@ void ObstacleBits::clear(Copy& copy, int u_size, int v_size, int w_size) {
 bool ObstacleBits::assign(const BitGrid& blocked) {
   bool changed = !(blocked.size() == size_);
   if (changed) resize(blocked.size());
+  changes_ = 0;
   for_changed_chunks(held_, blocked, [&](BitGrid::Rows rows) {
     for (int z = rows.z0; z < rows.z1; ++z) {
       for (int y = rows.y0; y < rows.y1; ++y) changed |= assign_row(blocked, y, z);
     }
   });
+  if (changes_ * kWordsAChange > std::int64_t(axes_[0].words.size())) forget_derived();
   held_ = blocked;
   return changed;
 }
@@ -128,43 +135,65 @@ void ObstacleBits::apply_changes(std::uint64_t changes, int x0, int y, int z) {
     flip(axes_[0], position(axes_[0], x, y, z));
     flip(axes_[1], position(axes_[1], y, x, z));
     flip(axes_[2], position(axes_[2], z, x, y));
+    if (++changes_ * kWordsAChange > std::int64_t(axes_[0].words.size())) continue;
+    forget_around(axes_[0], position(axes_[0], x, y, z));
+    forget_around(axes_[1], position(axes_[1], y, x, z));
+    forget_around(axes_[2], position(axes_[2], z, x, y));
   }
 }
 
-int ObstacleBits::straight_jump(CornerRule rule, int axis, int sign, Index3 from) const {
-  const Copy& copy = axes_[std::size_t(axis)];
+// What depends on the voxel at p: three words at most of each of the nine rows around it.
+void ObstacleBits::forget_around(Copy& copy, std::int64_t p) {
+  for (const std::int64_t v : {-copy.stride_v, std::int64_t{0}, copy.stride_v}) {
+    for (const std::int64_t u : {-copy.stride_u, std::int64_t{0}, copy.stride_u}) {
+      const std::int64_t row = p + v + u;
+      for (const std::int64_t q : {row - 1, row + 1}) {
+        copy.ahead.forget(stop_word(q));
+        copy.behind.forget(stop_word(q));
+      }
+    }
+  }
+}
+
+void ObstacleBits::forget_derived() {
+  for (Copy& copy : axes_) {
+    copy.ahead.forget_all();
+    copy.behind.forget_all();
+  }
+}
+
+void ObstacleBits::find_stops(Copy& copy, std::size_t word) {
+  const std::int64_t p = (std::int64_t(word) - 1) * 64;
+  const Rows before = rows_at(copy, p - 1), here = rows_at(copy, p), after = rows_at(copy, p + 1);
+  copy.ahead.set(word, here.own | forced(rule_, before, here, after));
+  copy.behind.set(word, here.own | forced(rule_, after, here, before));
+}
+
+int ObstacleBits::straight_jump(CornerRule rule, int axis, int sign, Index3 from) {
+  if (rule != rule_) {
+    rule_ = rule;
+    forget_derived();
+  }
+  Copy& copy = axes_[std::size_t(axis)];
   const int u = axis == 0 ? from.x : axis == 1 ? from.y : from.z;
   const int v = axis == 0 ? from.y : from.x;
   const int w = axis == 2 ? from.y : from.z;
   const std::int64_t p = position(copy, u, v, w);
-  const std::int64_t a = copy.stride_u, b = copy.stride_v;
-  const std::int64_t side[4] = {a, b, -a, -b};
-  const std::int64_t corner[4] = {a + b, b - a, -a - b, a - b};
-  const char* bytes = copy.bytes();
-  const auto load = [&](auto window) {
-    Rows rows;
-    rows.own = window(bytes, p);
-    for (int k = 0; k < 4; ++k) {
-      rows.side[k] = window(bytes, p + side[k]);
-      rows.corner[k] = window(bytes, p + corner[k]);
-    }
-    return rows;
+  // The window begins, or ends, at the voxel itself.
+  const std::int64_t low = sign > 0 ? p : p - 63;
+  const std::size_t first = stop_word(low);
+  const int shift = int(low & 63);
+  const auto stops = [&](const LazyWords& words, std::size_t word) {
+    if (!words.is_known(word)) find_stops(copy, word);
+    return words[word];
   };
-  const auto up = [](std::uint64_t x) { return x << 1; };
-  const auto down = [](std::uint64_t x) { return x >> 1; };
-  constexpr int kLast = kWindow - 2;  // the voxel ahead of it is still in the window
-  if (sign > 0) {
-    const Rows rows = load(ahead);
-    const std::uint64_t stop =
-        (forced(rule, rows, down, up) | rows.own | std::uint64_t{1} << kLast) & ~std::uint64_t{1};
-    const int steps = std::countr_zero(stop);
-    return (rows.own >> steps & 1U) != 0 ? 1 - steps : steps;
-  }
-  const Rows rows = load(behind);
-  const std::uint64_t top = std::uint64_t{1} << 63;
-  const std::uint64_t stop = (forced(rule, rows, up, down) | rows.own | top >> kLast) & ~top;
-  const int steps = std::countl_zero(stop);
-  return (rows.own << steps & top) != 0 ? 1 - steps : steps;
+  const LazyWords& words = sign > 0 ? copy.ahead : copy.behind;
+  std::uint64_t window = stops(words, first) >> shift;
+  if (shift != 0) window |= stops(words, first + 1) << (64 - shift);
+  constexpr std::uint64_t kTop = std::uint64_t{1} << 63;
+  const int steps = sign > 0 ? std::countr_zero((window & ~std::uint64_t{1}) | kTop)
+                             : std::countl_zero((window & ~kTop) | 1U);
+  return get(copy, p + sign * steps) ? 1 - steps : steps;
 }
 
 }  // namespace goshawk::path_search

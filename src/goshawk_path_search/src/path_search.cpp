@@ -105,8 +105,7 @@ Result<PlannedPath> PathSearch::plan(const PlanQuery& query) {
 
 Result<PlannedPath> PathSearch::plan(const PlanRequest& request, const StopSignal& stop) {
   std::vector<Vec3> goals_map = {request.goal.position};
-  goals_map.insert(goals_map.end(), request.other_goals_map.begin(),
-                   request.other_goals_map.end());
+  goals_map.insert(goals_map.end(), request.other_goals_map.begin(), request.other_goals_map.end());
   return plan(PlanQuery{.start_map = request.start.position,
                         .goals_map = goals_map,
                         .stop = stop,

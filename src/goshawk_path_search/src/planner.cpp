@@ -7,6 +7,7 @@
 #include <string>
 
 #include "goshawk/path_search/grid_search.hpp"
+#include "goshawk/path_search/path_reuse.hpp"
 #include "goshawk/path_search/sampling_search.hpp"
 #include "goshawk/path_search/weighted_search.hpp"
 
@@ -108,8 +109,13 @@ Result<std::unique_ptr<GridPlanner>> make_planner(const Config& config, double r
                                                    .step_voxels = config.step_m / resolution_m,
                                                    .seed = std::uint64_t(config.seed),
                                                    .validity = config.validity});
-    default:
+    case Planner::astar_manhattan:  // not exact: nothing says that its path is a shortest one
       return make_grid_search(config.planner, config.corner_rule);
+    default: {
+      auto planner = make_grid_search(config.planner, config.corner_rule);
+      if (!config.reuse_path) return planner;
+      return make_reusing(std::move(planner), config.corner_rule);
+    }
   }
 }
 

@@ -14,6 +14,8 @@ constexpr std::uint8_t kCostly = 128;
 
 CostField::CostField(const Weights& weights) : weights_(weights) {
   const int reach = weights.near_obstacles() ? weights.reach_voxels : 0;
+  // Blocks as wide as what has to be looked at around them.
+  while (1 << shift_ < 2 * reach) ++shift_;
   for (int k = 0; k < kCostly; ++k) {
     const double nearness = k >= 1 && k <= reach ? 1.0 - double(k - 1) / double(reach) : 0.0;
     table_[std::size_t(k)] = 1.0 + weights.clearance * nearness;
@@ -27,15 +29,16 @@ void CostField::assign(const BitGrid& blocked, const BitGrid* known) {
     size_ = blocked.size();
     classes_.assign(std::size_t(blocked.voxels()), 0);
     blocked_ = BitGrid();
+    blocks_ = {((size_.x - 1) >> 6) + 1, ((size_.y - 1) >> shift_) + 1,
+               ((size_.z - 1) >> shift_) + 1};
+    stale_.assign(std::size_t(blocks_.x) * std::size_t(blocks_.y) * std::size_t(blocks_.z),
+                  weights_.near_obstacles() ? 1 : 0);
     known_ = known == nullptr ? BitGrid() : BitGrid(size_, false, true);
   }
   if (weights_.near_obstacles()) {
-    if (blocked_.empty()) {
-      measure(blocked, {{}, size_});
-    } else {
-      for_changed_chunks(blocked_, blocked, [&](BitGrid::Rows rows) {
-        measure(blocked, widened(changed_within(blocked, rows)));
-      });
+    if (!blocked_.empty()) {
+      for_changed_chunks(blocked_, blocked,
+                         [&](BitGrid::Rows rows) { mark_changes(blocked, rows); });
     }
     blocked_ = blocked;
   }
@@ -51,31 +54,52 @@ CostField::Box CostField::widened(const Box& box) const {
            std::min(size_.z, box.hi.z + by)}};
 }
 
-// The part of a chunk, whole words along x, that holds all voxels that differ.
-CostField::Box CostField::changed_within(const BitGrid& blocked, BitGrid::Rows rows) const {
-  int first = int(blocked.words_per_row()), last = 0;
-  for (int z = rows.z0; z < rows.z1; ++z) {
-    for (int y = rows.y0; y < rows.y1; ++y) {
-      const auto *before = blocked_.row(y, z), *after = blocked.row(y, z);
-      for (int w = 0; w < int(blocked.words_per_row()); ++w) {
-        if (before[w] == after[w]) continue;
-        first = std::min(first, w);
-        last = std::max(last, w);
+// The blocks within reach of the voxels that differ, word by word along x.
+void CostField::mark_changes(const BitGrid& blocked, BitGrid::Rows rows) {
+  for (int w = 0; w < int(blocked.words_per_row()); ++w) {
+    BitGrid::Word differ = 0;
+    Index3 lo{0, rows.y1, rows.z1}, hi{0, rows.y0, rows.z0};
+    for (int z = rows.z0; z < rows.z1; ++z) {
+      for (int y = rows.y0; y < rows.y1; ++y) {
+        const BitGrid::Word bits = blocked_.row(y, z)[w] ^ blocked.row(y, z)[w];
+        if (bits == 0) continue;
+        differ |= bits;
+        lo = {0, std::min(lo.y, y), std::min(lo.z, z)};
+        hi = {0, std::max(hi.y, y), std::max(hi.z, z)};
+      }
+    }
+    if (differ == 0) continue;
+    lo.x = 64 * w + std::countr_zero(differ);
+    hi.x = std::min(size_.x - 1, 64 * w + 63 - std::countl_zero(differ));
+    const Box near = widened({lo, hi + Index3{1, 1, 1}});
+    for (int z = near.lo.z >> shift_; z <= (near.hi.z - 1) >> shift_; ++z) {
+      for (int y = near.lo.y >> shift_; y <= (near.hi.y - 1) >> shift_; ++y) {
+        for (int x = near.lo.x >> 6; x <= (near.hi.x - 1) >> 6; ++x) {
+          stale_[block_of({64 * x, y << shift_, z << shift_})] = 1;
+        }
       }
     }
   }
-  return {{64 * first, rows.y0, rows.z0}, {std::min(size_.x, 64 * (last + 1)), rows.y1, rows.z1}};
+}
+
+void CostField::measure_block(Index3 voxel) {
+  const int side = 1 << shift_;
+  const Index3 lo{voxel.x & ~63, voxel.y & -side, voxel.z & -side};
+  measure({lo,
+           {std::min(size_.x, lo.x + 64), std::min(size_.y, lo.y + side),
+            std::min(size_.z, lo.z + side)}});
+  stale_[block_of(voxel)] = 0;
 }
 
 // The chessboard distance: what is blocked grows by one voxel at a time. What lies farther from the
 // box than the reach does not matter, and the window's outside is nobody's obstacle; the map's is.
-void CostField::measure(const BitGrid& blocked, const Box& box) {
+void CostField::measure(const Box& box) {
   const Box window = widened(box);
   const Index3 corner{window.lo.x & ~63, window.lo.y, window.lo.z};
   BitGrid level(window.hi - corner, false);
   for (int z = corner.z; z < window.hi.z; ++z) {
     for (int y = corner.y; y < window.hi.y; ++y) {
-      const auto* from = blocked.row(y, z) + corner.x / 64;
+      const auto* from = blocked_.row(y, z) + corner.x / 64;
       auto* to = level.mutable_row(y - corner.y, z - corner.z);
       std::copy_n(from, level.words_per_row(), to);
       const int used = level.size().x % 64;
@@ -86,8 +110,8 @@ void CostField::measure(const BitGrid& blocked, const Box& box) {
   for (int z = box.lo.z; z < box.hi.z; ++z) {
     for (int y = box.lo.y; y < box.hi.y; ++y) {
       for (int x = box.lo.x; x < box.hi.x; ++x) {
-        const int to_edge = 1 + std::min({x, y, z, size_.x - 1 - x, size_.y - 1 - y,
-                                          size_.z - 1 - z});
+        const int to_edge =
+            1 + std::min({x, y, z, size_.x - 1 - x, size_.y - 1 - y, size_.z - 1 - z});
         std::uint8_t& held = classes_[flat({x, y, z})];
         held = std::uint8_t((held & kCostly) | std::min(to_edge, reach + 1));
       }

@@ -87,7 +87,7 @@ int walked_jump(const BitGrid& map, CornerRule rule, int direction, Index3 at) {
     if (map.test(at)) return 1 - steps;
     const auto moves = move_rules(rule).successors(direction, bits.block(bits.node(at)));
     if ((moves & ~(BlockMask{1} << direction)) != 0) return steps;
-    if (steps == ObstacleBits::kWindow - 2) return steps;
+    if (steps == ObstacleBits::kLongestJump) return steps;
   }
 }
 

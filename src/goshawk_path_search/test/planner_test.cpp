@@ -67,6 +67,21 @@ TEST(Planners, FindTheDijkstraLengthOnEveryRandomMap) {
   }
 }
 
+// Maps as small as these have labels in rows, unless asked for otherwise.
+TEST(JaStar, FindsTheDijkstraLengthWithLabelsInTiles) {
+  for (const CornerRule rule : {CornerRule::no_squeeze, CornerRule::squeeze}) {
+    std::vector<std::unique_ptr<GridPlanner>> planners;
+    planners.push_back(make_jastar(rule, true));
+    Random random(5);
+    for (int n = 0; n < 6000; ++n) {
+      const BitGrid map =
+          n % 20 == 0 ? reference::box_map({40, 30, 10}, 0.2, random) : reference::any_map(random);
+      expect_truth(planners, map, rule == CornerRule::squeeze, random);
+      if (HasFatalFailure()) FAIL() << to_word(rule) << ", map " << n;
+    }
+  }
+}
+
 TEST(JaStar, FindsTheDijkstraLengthOnLargerMaps) {
   for (const auto& rule : kRuleNames) {
     std::vector<std::unique_ptr<GridPlanner>> planners;

@@ -131,22 +131,48 @@ bool Node::Impl::serve(const Node& node) {
   return any;
 }
 
+namespace {
+
+std::function<void(const Error&)> log_second_writers(std::shared_ptr<spdlog::logger> log) {
+  return [log = std::move(log)](const Error& error) {
+    log->warn("{}: {}", to_string(error.code), error.message);
+  };
+}
+
+}  // namespace
+
 Node::Node(Context& context, std::string name, RosArgs args, std::shared_ptr<const Clock> clock)
     : name_(std::move(name)),
       args_(std::move(args)),
       clock_(std::move(clock)),
       log_(std::make_shared<spdlog::logger>(name_,
                                             std::make_shared<spdlog::sinks::stderr_sink_mt>())),
-      impl_(std::make_unique<Impl>(context)) {
+      impl_(std::make_unique<Impl>(context.impl())) {
   log_->set_pattern("%Y-%m-%d %H:%M:%S.%e [%n] %l: %v");
   log_->set_level(spdlog::level::from_str(args_.log_level));
   log_->flush_on(spdlog::level::info);
-  impl_->on_second_writer = [log = log_](const Error& error) {
-    log->warn("{}: {}", to_string(error.code), error.message);
-  };
+  impl_->on_second_writer = log_second_writers(log_);
+}
+
+Node::Node(const Node& other, std::unique_ptr<Impl> impl)
+    : name_(other.name_),
+      args_(other.args_),
+      clock_(other.clock_),
+      log_(other.log_),
+      impl_(std::move(impl)) {
+  impl_->on_second_writer = log_second_writers(log_);
 }
 
 Node::~Node() = default;
+
+std::unique_ptr<Node> Node::beside() {
+  if (impl_->time.takes_turns) throw std::logic_error("Node::beside() in lock step");
+  return std::unique_ptr<Node>(new Node(*this, std::make_unique<Impl>(impl_->context)));
+}
+
+bool Node::in_lock_step() const {
+  return impl_->time.takes_turns;
+}
 
 std::int64_t Node::now_ns() const {
   return impl_->time.on ? impl_->time.now_ns : clock_->now_ns();

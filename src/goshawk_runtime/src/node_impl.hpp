@@ -79,7 +79,7 @@ struct SimulatedTime {
 };
 
 struct Node::Impl {
-  explicit Impl(Context& c) : context(c.impl()) {
+  explicit Impl(Context::Impl& c) : context(c) {
     wait_set.attach_condition(stop);
     turn_wait_set.attach_condition(stop);
   }

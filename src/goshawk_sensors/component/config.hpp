@@ -52,11 +52,16 @@ constexpr auto words_of(ImageEncoding) {
 }
 
 /// The frame in which the points of a cloud are given.
-enum class CloudFrame { sensor, base_link };
+enum class CloudFrame {
+  sensor,     // as drivers publish them
+  base_link,  // moved by the mount
+  map,        // moved by the vehicle's true pose at each ray, as a perfect registration would
+};
 
 constexpr auto words_of(CloudFrame) {
   using enum CloudFrame;
-  return std::to_array<Named<CloudFrame>>({{sensor, "sensor"}, {base_link, "base_link"}});
+  return std::to_array<Named<CloudFrame>>(
+      {{sensor, "sensor"}, {base_link, "base_link"}, {map, "map"}});
 }
 
 struct Config {
@@ -86,8 +91,11 @@ void describe(Self& c, Visitor&& visit) {
       "and ceiling at its faces)",
       Anything{});
   visit("frame", c.frame, "", "name of the sensor's frame", Anything{});
-  visit("cloud_frame", c.cloud_frame, "",
-        "frame of the points in a cloud: sensor, or base_link (moved by the mount)", Anything{});
+  visit(
+      "cloud_frame", c.cloud_frame, "",
+      "frame of the points in a cloud: sensor, base_link (moved by the mount), or map (by the true "
+      "pose at each ray: without the distortion of motion)",
+      Anything{});
   visit("fields", c.fields, "",
         "fields of a cloud: velodyne, ouster, livox, xyz, or automatic (as the driver of this kind "
         "of sensor)",

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <optional>
 
 #include "goshawk/conversions/vehicle.hpp"
 
@@ -66,16 +67,22 @@ std::uint32_t millimetres(double length_m) {
   return std::uint32_t(std::lround(1e3 * length_m));
 }
 
-Eigen::Vector3f place_of(const Return& r, const CloudForm& form) {
-  if (!r.valid) {
-    return Eigen::Vector3f::Constant(
-        form.missing == Missing::nan ? std::numeric_limits<float>::quiet_NaN() : 0.0F);
-  }
-  if (form.moved) {
-    const Vec3 moved = form.mount.position_map + form.mount.q_map_base * r.point.cast<double>();
-    return moved.cast<float>();
-  }
-  return form.optical ? Eigen::Vector3f(-r.point.y(), -r.point.z(), r.point.x()) : r.point;
+// Nothing for a missing return, and for one whose pose is not known.
+std::optional<Eigen::Vector3f> place_of(const Return& r, const Scan& scan, const CloudForm& form,
+                                        const PoseTrack& track) {
+  if (!r.valid) return std::nullopt;
+  if (form.optical) return Eigen::Vector3f(-r.point.y(), -r.point.z(), r.point.x());
+  if (form.frame == CloudFrame::sensor) return r.point;
+  const Vec3 p_base = form.mount.position_map + form.mount.q_map_base * r.point.cast<double>();
+  if (form.frame == CloudFrame::base_link) return p_base.cast<float>();
+  const auto pose = track.at(scan.start_ns + r.offset_ns);
+  if (!pose) return std::nullopt;
+  return (pose->position_map + pose->q_map_base * p_base).cast<float>();
+}
+
+Eigen::Vector3f missing_place(Missing missing) {
+  const bool nan = missing == Missing::nan;
+  return Eigen::Vector3f::Constant(nan ? std::numeric_limits<float>::quiet_NaN() : 0.0F);
 }
 
 void put_extras(const Return& r, const Scan& scan, const CloudForm& form, std::uint8_t* point) {
@@ -145,16 +152,24 @@ CloudForm CloudForm::of(const Config& c) {
     const bool all = form.fields == Fields::ouster || form.fields == Fields::livox;
     form.missing = all ? Missing::zero : Missing::leave_out;
   }
-  form.moved = c.cloud_frame == CloudFrame::base_link;
-  form.optical = camera && !form.moved;
+  form.frame = c.cloud_frame;
+  form.optical = camera && c.cloud_frame == CloudFrame::sensor;
   form.mount = mount_of(c.sensor.mount);
-  form.frame_id = form.moved     ? std::string(conversions::kBodyFrame)
-                  : form.optical ? optical_frame(c)
-                                 : c.frame;
+  switch (c.cloud_frame) {
+    case CloudFrame::sensor:
+      form.frame_id = camera ? optical_frame(c) : c.frame;
+      break;
+    case CloudFrame::base_link:
+      form.frame_id = conversions::kBodyFrame;
+      break;
+    case CloudFrame::map:
+      form.frame_id = conversions::kMapFrame;
+      break;
+  }
   return form;
 }
 
-void fill_msg(const Scan& scan, const CloudForm& form, PointCloud2& m) {
+void fill_msg(const Scan& scan, const CloudForm& form, const PoseTrack& track, PointCloud2& m) {
   const Layout layout = layout_of(form.fields);
   set_layout(layout, m);
   m.header(conversions::make_header(scan.start_ns, form.frame_id));
@@ -166,12 +181,13 @@ void fill_msg(const Scan& scan, const CloudForm& form, PointCloud2& m) {
   bool all_valid = true;
   for (std::size_t i = 0; i < scan.returns.size(); ++i) {
     const Return& r = scan.returns[i];
-    if (!r.valid && form.missing == Missing::leave_out) continue;
-    all_valid = all_valid && (r.valid || form.missing == Missing::zero);
+    const auto place = place_of(r, scan, form, track);
+    if (!place && form.missing == Missing::leave_out) continue;
+    all_valid = all_valid && (place || form.missing == Missing::zero);
     const std::size_t n = organised ? organised_place(i, r, form, columns) : count;
     std::uint8_t* point = m.data().data() + n * step;
-    const Eigen::Vector3f place = place_of(r, form);
-    for (int axis = 0; axis < 3; ++axis) put(point, std::uint32_t(4 * axis), place[axis]);
+    const Eigen::Vector3f p = place.value_or(missing_place(form.missing));
+    for (int axis = 0; axis < 3; ++axis) put(point, std::uint32_t(4 * axis), p[axis]);
     put_extras(r, scan, form, point);
     ++count;
   }

@@ -15,7 +15,7 @@ struct CloudForm {
   Missing missing = Missing::leave_out;  // not automatic
   int channels = 1;                      // ouster: rows of the organised cloud
   bool optical = false;                  // x right, y down, z forward
-  bool moved = false;                    // by `mount`, into base_link
+  CloudFrame frame = CloudFrame::sensor;
   Pose mount;
   std::string frame_id;
 
@@ -27,7 +27,10 @@ struct CloudForm {
 std::string optical_frame(const Config& config);
 
 /// Overwrites the message; its memory is used again.
-void fill_msg(const Scan& scan, const CloudForm& form, sensor_msgs::msg::PointCloud2& m);
+/// @param track the poses of the scan, for a cloud in `map`: a return without a pose counts as
+/// missing
+void fill_msg(const Scan& scan, const CloudForm& form, const PoseTrack& track,
+              sensor_msgs::msg::PointCloud2& m);
 
 /// Depths of a depth camera. @pre the scan has one return a pixel
 void fill_msg(const Scan& scan, const Config& config, sensor_msgs::msg::Image& m);

@@ -21,6 +21,9 @@ using sensor_msgs::msg::PointCloud2;
 
 // How often a world that could not be read is looked for again.
 constexpr double kLookAgain_s = 2.0;
+// Pauses of odometry that are bridged, and poses that are kept besides those of one scan.
+constexpr double kLongestGap_s = 0.5;
+constexpr double kKept_s = 2.0;
 
 Result<std::unique_ptr<VoxelWorld>> read_world(const Config& config) {
   if (config.world_file.empty()) {
@@ -59,6 +62,7 @@ class SensorsComponent : public Component {
         config_(node.parameters<Config>()),
         sensor_(make_sensor(config_)),
         form_(CloudForm::of(config_)),
+        track_(kLongestGap_s, kKept_s + 1.0 / config_.sensor.pattern.rate_hz),
         reporter_(node, StageRole::other, std::string(to_word(config_.sensor.pattern.pattern))),
         transforms_(node.advertise<tf2_msgs::msg::TFMessage>("/tf_static", Qos::latched())) {
     const bool camera = config_.sensor.pattern.pattern == Pattern::depth_camera;
@@ -122,7 +126,7 @@ class SensorsComponent : public Component {
     Waiting& waiting = waiting_.emplace_back();
     waiting.due_ns = scan.end_ns + std::llround(1e9 * config_.sensor.latency_s);
     if (image_) fill_msg(scan, config_, waiting.image.emplace());
-    if (cloud_) fill_msg(scan, form_, waiting.cloud.emplace());
+    if (cloud_) fill_msg(scan, form_, track_, waiting.cloud.emplace());
   }
 
   void publish(const Waiting& waiting) {
@@ -139,13 +143,13 @@ class SensorsComponent : public Component {
   Config config_;
   Sensor sensor_;
   CloudForm form_;
+  PoseTrack track_;  // longer than a scan
   stage::StageReporter reporter_;
   Publisher<tf2_msgs::msg::TFMessage> transforms_;
   std::optional<Publisher<PointCloud2>> cloud_;
   std::optional<Publisher<Image>> image_;
   std::optional<Publisher<CameraInfo>> info_;
   std::unique_ptr<VoxelWorld> world_;
-  PoseTrack track_;
   std::deque<Waiting> waiting_;
 };
 

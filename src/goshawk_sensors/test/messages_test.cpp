@@ -58,9 +58,10 @@ std::string fields_of(const PointCloud2& m) {
   return text + "/" + std::to_string(m.point_step());
 }
 
-PointCloud2 cloud_of(const Scan& scan, const CloudForm& form) {
+PointCloud2 cloud_of(const Scan& scan, const CloudForm& form,
+                     const PoseTrack& track = PoseTrack()) {
   PointCloud2 m;
-  fill_msg(scan, form, m);
+  fill_msg(scan, form, track, m);
   EXPECT_EQ(m.row_step(), m.width() * m.point_step());
   EXPECT_EQ(m.data().size(), std::size_t(m.row_step()) * m.height());
   EXPECT_FALSE(m.is_bigendian());
@@ -151,13 +152,35 @@ TEST(CloudMessage, InBaseLinkThePointsAreMovedByTheMount) {
   EXPECT_NEAR(read<float>(m, "z", 0), -1.5, 1e-6);
 }
 
+TEST(CloudMessage, InMapEachPointIsMovedByThePoseAtItsRay) {
+  Config c = config_of(Preset::vlp16);
+  c.cloud_frame = CloudFrame::map;
+  c.sensor.mount.z_m = 0.5;
+  const Scan scan = three_returns();
+  PoseTrack track;
+  for (int i = 0; i <= 10; ++i) {  // at 10 m/s along y, turned by a right angle
+    Pose pose;
+    pose.position_map = Vec3(1.0, 0.1 * i, 0.0);
+    pose.q_map_base = Eigen::AngleAxisd(0.5 * kPi, Vec3::UnitZ());
+    ASSERT_TRUE(track.add(scan.start_ns + 10'000'000LL * i, pose));
+  }
+  const auto m = cloud_of(scan, CloudForm::of(c), track);
+  EXPECT_EQ(m.header().frame_id(), "map");
+  ASSERT_EQ(m.width(), 2U);
+  EXPECT_NEAR(read<float>(m, "x", 0), 0.0, 1e-5);
+  EXPECT_NEAR(read<float>(m, "y", 0), 3.00001, 1e-5);
+  EXPECT_NEAR(read<float>(m, "z", 0), -1.5, 1e-5);
+  EXPECT_NEAR(read<float>(m, "y", 1), 0.99, 1e-5) << "99 ms later";
+  EXPECT_EQ(cloud_of(scan, CloudForm::of(c)).width(), 0U) << "no pose, no point";
+}
+
 TEST(CloudMessage, AMessageThatIsUsedAgainHoldsTheNewScanOnly) {
   Scan scan = three_returns();
   const CloudForm form = CloudForm::of(config_of(Preset::vlp16));
   PointCloud2 used;
-  fill_msg(scan, form, used);
+  fill_msg(scan, form, PoseTrack(), used);
   scan.returns.pop_back();
-  fill_msg(scan, form, used);
+  fill_msg(scan, form, PoseTrack(), used);
   EXPECT_EQ(used, cloud_of(scan, form));
 }
 

@@ -281,11 +281,11 @@ TEST(Sensor, AGapInThePosesCostsTheScanAndNoMore) {
     return sensor.advance(world, track, done);
   };
   for (int ms = 0; ms <= 150; ms += 10) ASSERT_TRUE(feed(ms));
-  const auto lost = feed(600);
+  const auto lost = feed(700);
   ASSERT_FALSE(lost);
   EXPECT_EQ(lost.code(), ErrorCode::tracking_lost);
-  for (int ms = 610; ms <= 850; ms += 10) ASSERT_TRUE(feed(ms));
-  EXPECT_EQ(starts, (std::vector<std::int64_t>{0, 600'000'000, 700'000'000}));
+  for (int ms = 710; ms <= 950; ms += 10) ASSERT_TRUE(feed(ms));
+  EXPECT_EQ(starts, (std::vector<std::int64_t>{0, 700'000'000, 800'000'000}));
 }
 
 TEST(Sensor, TimeThatBeginsAnewBeginsANewScan) {

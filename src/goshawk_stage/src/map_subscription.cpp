@@ -7,7 +7,11 @@ namespace goshawk::stage {
 namespace msg = goshawk_msgs::msg;
 
 MapSubscription::MapSubscription(runtime::Node& node, StageReporter& reporter, Callback on_map)
-    : reporter_(reporter), on_map_(std::move(on_map)) {
+    : MapSubscription(node, std::move(on_map),
+                      [&reporter](const Error& error) { reporter.fault(error); }) {}
+
+MapSubscription::MapSubscription(runtime::Node& node, Callback on_map, FaultCallback on_fault)
+    : on_map_(std::move(on_map)), on_fault_(std::move(on_fault)) {
   node.subscribe<msg::VoxelGrid>(
       "map/voxels", runtime::Qos::latched(),
       [this](const msg::VoxelGrid& m, const runtime::MessageInfo&) { on_grid(m); },
@@ -20,7 +24,7 @@ MapSubscription::MapSubscription(runtime::Node& node, StageReporter& reporter, C
 
 void MapSubscription::on_grid(const msg::VoxelGrid& m) {
   auto grid = conversions::from_msg(m);
-  if (!grid) return reporter_.fault(grid.error());
+  if (!grid) return on_fault_(grid.error());
   if (grid_ != nullptr) {
     grid->grown.share_equal_chunks(grid_->grown);
     grid->known.share_equal_chunks(grid_->known);
@@ -32,9 +36,9 @@ void MapSubscription::on_grid(const msg::VoxelGrid& m) {
 void MapSubscription::on_update(const msg::VoxelGridUpdate& m) {
   if (grid_ == nullptr || grid_->version != m.from_version()) return;
   const auto update = conversions::from_msg(m);
-  if (!update) return reporter_.fault(update.error());
+  if (!update) return on_fault_(update.error());
   VoxelGrid grid = *grid_;  // shares its bits
-  if (auto status = apply(grid, *update); !status) return reporter_.fault(status.error());
+  if (auto status = apply(grid, *update); !status) return on_fault_(status.error());
   take(std::move(grid));
 }
 

@@ -52,10 +52,12 @@ CertifiedTrajectory plan(const std::shared_ptr<const VoxelGrid>& map, const Flat
 }
 
 // @return [m] the largest tracking error
-double fly(const CommittedTrajectory& committed, const FlatState& start) {
+double fly(const std::shared_ptr<const VoxelGrid>& map, const CommittedTrajectory& committed,
+           const FlatState& start) {
   auto vehicle = need(simulator::Quadrotor::create({}), "simulator");
   auto tracker = need(tracker::Tracker::create({}), "tracker");
   need(vehicle.reset(start.position, 0.0), "reset");
+  tracker.set_map(map, vehicle.time_ns());
   bool accepted = false;
   while (vehicle.time_ns() < std::int64_t(1e9 * (committed.flown().duration_s() + 1.0))) {
     const auto now_ns = vehicle.time_ns();
@@ -86,7 +88,7 @@ int main() {
   for (const auto& order : navigator.take_orders()) {
     if (const auto* committed = std::get_if<CommittedTrajectory>(&order)) {
       std::printf("certified to %.1e m, flown to %.4f m\n",
-                  committed->nominal().certificate().goal_m, fly(*committed, start));
+                  committed->nominal().certificate().goal_m, fly(map, *committed, start));
       return 0;
     }
   }

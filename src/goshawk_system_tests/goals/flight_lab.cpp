@@ -13,7 +13,6 @@ constexpr std::int64_t kMillisecond = 1'000'000;
 constexpr double kBodyRadius_m = 0.15;
 constexpr double kMargin_m = 0.05;
 constexpr double kMessage_s = 0.001;  // over DDS
-const Vec3 kHome(3, 0, 1);
 
 }  // namespace
 
@@ -29,14 +28,27 @@ std::shared_ptr<const VoxelGrid> default_map() {
                                                      .inflation_m = growth_m});
 }
 
-BitGrid touching(const VoxelGrid& map) {
-  return inflate(map.raw, kBodyRadius_m, map.geometry.resolution_m).value();
+bool touches(const VoxelGrid& map, const Vec3& position_map) {
+  const Vec3 p = map.geometry.to_grid(position_map);
+  const double reach = kBodyRadius_m / map.geometry.resolution_m;
+  const Vec3 lo = (p.array() - reach).floor(), hi = (p.array() + reach).floor();
+  for (int x = int(lo.x()); x <= int(hi.x()); ++x) {
+    for (int y = int(lo.y()); y <= int(hi.y()); ++y) {
+      for (int z = int(lo.z()); z <= int(hi.z()); ++z) {
+        const Vec3 corner(x, y, z);
+        const Vec3 nearest = p.cwiseMax(corner).cwiseMin(corner + Vec3::Ones());
+        const bool occupied = map.raw.contains({x, y, z}) && map.raw.test({x, y, z});
+        if (occupied && (nearest - p).norm() < reach) return true;
+      }
+    }
+  }
+  return false;
 }
 
 FlightLab::FlightLab(std::shared_ptr<const VoxelGrid> map, std::uint64_t seed,
-                     const Delays& delays, const navigator::Config& config)
-    : map_(std::move(map)),
-      touching_(touching(*map_)),
+                     const Delays& delays, const navigator::Config& config, const Vec3& home_map)
+    : home_map_(home_map),
+      map_(std::move(map)),
       random_(seed),
       delays_(delays),
       search_(path_search::PathSearch::create({}).value()),
@@ -45,10 +57,18 @@ FlightLab::FlightLab(std::shared_ptr<const VoxelGrid> map, std::uint64_t seed,
       vehicle_(simulator::Quadrotor::create({}).value()),
       tracker_(tracker::Tracker::create({}).value()),
       navigator_(config, 1) {
-  search_.set_map(map_);
-  navigator_.on_map(map_, 0);
-  if (!vehicle_.reset(kHome, 0.0)) throw std::logic_error("the vehicle does not start");
+  set_map(map_);
+  if (!vehicle_.reset(home_map_, 0.0)) throw std::logic_error("the vehicle does not start");
   run(0.1);
+}
+
+void FlightLab::set_map(std::shared_ptr<const VoxelGrid> map) {
+  map_ = std::move(map);
+  search_.set_map(map_);
+  tracker_.set_map(map_, now_ns());
+  report_tracker();
+  navigator_.on_map(map_, now_ns());
+  take_orders();
 }
 
 Status FlightLab::goal(const Vec3& goal_map, double yaw_rad) {
@@ -73,7 +93,15 @@ Vec3 FlightLab::random_place() {
     const Index3 i{random_.below(size.x), random_.below(size.y), random_.below(size.z)};
     if (map_->grown.test(i)) continue;
     const Vec3 place = map_->geometry.center(i);
-    if (search_.plan(kHome, place)) return place;
+    if (search_.plan(home_map_, place)) return place;
+  }
+}
+
+Vec3 FlightLab::blocked_place() {
+  const Index3 size = map_->geometry.size;
+  while (true) {
+    const Index3 i{random_.below(size.x), random_.below(size.y), random_.below(size.z)};
+    if (map_->grown.test(i)) return map_->geometry.center(i);
   }
 }
 
@@ -94,6 +122,7 @@ void FlightLab::step() {
     }
     report_tracker();
     navigator_.on_tracking(tracker_.status().trajectory_id, now);
+    take_orders();
     max_error_m_ = std::max(max_error_m_, tracker_.status().error_m);
   }
   if (now % (20 * kMillisecond) == 0) {
@@ -103,8 +132,7 @@ void FlightLab::step() {
   }
   if (auto status = vehicle_.advance(0.001); !status) throw std::logic_error(status.error().message);
   max_speed_m_s_ = std::max(max_speed_m_s_, speed());
-  const auto voxel = map_->geometry.index_of(position());
-  if (!voxel || touching_.test(*voxel)) ++contacts_;
+  if (touches(*map_, position())) ++contacts_;
 }
 
 void FlightLab::in(double seconds, std::function<void()> act) {
@@ -121,6 +149,7 @@ void FlightLab::take_orders() {
 
 void FlightLab::obey(const PlanRequest& request) {
   ++plans_;
+  newest_request_ = request.id;
   auto planned = plan(request);
   if (meddle) meddle(request, planned.answer);
   const bool late = random_.chance(delays_.late_share);
@@ -157,6 +186,7 @@ void FlightLab::obey(const navigator::Commit& commit) {
     const std::int64_t now = vehicle_.time_ns();
     const auto status = tracker_.accept(committed, now);
     if (!status) refusals.push_back(status.error());
+    if (status) flown_ = committed;
     const Error outcome = status ? Error{ErrorCode::ok, ""} : status.error();
     in(kMessage_s, [this, id = committed.id(), outcome] {
       navigator_.on_report(id, StageRole::tracker, outcome, vehicle_.time_ns());

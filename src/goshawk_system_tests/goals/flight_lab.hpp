@@ -26,15 +26,18 @@ struct Delays {
 
 /// The default world, its map grown for the default vehicle.
 std::shared_ptr<const VoxelGrid> default_map();
-/// The same grown by the vehicle's radius alone: where its centre is in it, the body touches.
-BitGrid touching(const VoxelGrid& map);
+/// Is the body nearer to an occupied voxel than its radius?
+bool touches(const VoxelGrid& map, const Vec3& position_map);
 
 /// All stages' cores, the tracker and the simulated vehicle in one thread and simulated time: a
 /// flight of a second takes milliseconds, and equal seeds give equal flights.
 class FlightLab {
  public:
   FlightLab(std::shared_ptr<const VoxelGrid> map, std::uint64_t seed, const Delays& delays = {},
-            const navigator::Config& config = {});
+            const navigator::Config& config = {}, const Vec3& home_map = Vec3(3, 0, 1));
+
+  /// From here on all stages have this map.
+  void set_map(std::shared_ptr<const VoxelGrid> map);
 
   Status goal(const Vec3& goal_map) { return goal(goal_map, 0.0); }
   Status goal(const Vec3& goal_map, double yaw_rad);
@@ -44,14 +47,22 @@ class FlightLab {
   /// @return a free place that the search reaches from the first one
   Vec3 random_place();
 
+  /// @return the centre of a voxel of the grown map
+  Vec3 blocked_place();
+
+  tracker::Tracker& tracker() { return tracker_; }
+  const std::optional<CommittedTrajectory>& flown() const { return flown_; }  // newest accepted
+  std::int64_t now_ns() const { return vehicle_.time_ns(); }
   const Vec3& position() const { return vehicle_.state().position_map; }
-  double speed() const { return vehicle_.state().velocity_map.norm(); }
+  const Vec3& velocity() const { return vehicle_.state().velocity_map; }
+  double speed() const { return velocity().norm(); }
   bool moves() const { return tracker_.status().mode != tracker::Mode::hold; }
   const navigator::StateOrder& state() const { return state_; }
   bool settled() const {
     return state_.state == navigator::State::arrived || state_.state == navigator::State::failed;
   }
-  std::uint64_t tracked_id() const { return tracker_.status().trajectory_id; }
+  tracker::TrackingStatus tracking() const { return tracker_.status(); }
+  std::uint64_t newest_request() const { return newest_request_; }
   double now_s() const { return double(vehicle_.time_ns()) * 1e-9; }
 
   int plans() const { return plans_; }
@@ -87,8 +98,8 @@ class FlightLab {
   Planned plan(const PlanRequest& request);
   void report_tracker();
 
+  Vec3 home_map_;
   std::shared_ptr<const VoxelGrid> map_;
-  BitGrid touching_;
   Random random_;
   Delays delays_;
   path_search::PathSearch search_;
@@ -99,8 +110,10 @@ class FlightLab {
   navigator::Navigator navigator_;
   navigator::StateOrder state_;
   std::deque<Event> events_;
+  std::optional<CommittedTrajectory> flown_;
   std::string reported_;
   std::uint64_t answers_ = 0;
+  std::uint64_t newest_request_ = 0;
   int plans_ = 0;
   int commits_ = 0;
   int contacts_ = 0;

@@ -1,12 +1,15 @@
 #!/usr/bin/python3
 """Flights on two hosts over a link with faults. By hand, with more goals for each kind of fault:
 
-    LAB_GOALS=20 /usr/bin/python3 test/hosts_test.py Flights
+    LAB_GOALS=20 /usr/bin/python3 test/hosts_test.py FaultyLink SkewedClocks
 """
 
 import json
 import math
 import os
+import re
+import shlex
+import shutil
 import unittest
 
 import harness
@@ -113,7 +116,9 @@ class Link(LabTest):
         self.assertGreater(lost, 0)
 
 
-class Flights(LabTest):
+class FlightCase(LabTest):
+    """What flights of the lab share."""
+
     def launch(self, file="flight_hosts", clock_s=0.0, **faults):
         self.lab.hosts["ground"].set_clock(clock_s)
         self.lab.set(**faults)
@@ -151,6 +156,8 @@ class Flights(LabTest):
         self.assertEqual([a for a in answers if not a.startswith("arrived")], [],
                          self.stack.tails())
 
+
+class FaultyLink(FlightCase):
     def test_loss_and_delay(self):
         self.launch(loss=0.2, delay=0.05, jitter=0.01, duplicate=0.02, reorder=0.02)
         self.assert_all_arrive(self.fly())
@@ -166,6 +173,14 @@ class Flights(LabTest):
         for answer in answers:
             self.assertRegex(answer, "^arrived|^failed/(stage_silent|tracking_lost): .*")
 
+    def test_the_tracker_and_the_plant_on_different_hosts(self):
+        file = self.sandbox.folder / "split.yaml"
+        file.write_text(SPLIT)
+        self.launch(file, loss=0.2, delay=0.01)
+        self.assert_all_arrive(self.fly())
+
+
+class SkewedClocks(FlightCase):
     def test_the_ground_is_three_seconds_ahead(self):
         self.launch(clock_s=3.0, delay=0.01)
         self.assert_all_arrive(self.fly())
@@ -181,24 +196,22 @@ class Flights(LabTest):
         self.assertIn("clock skew", answers[0])
         self.assertIn("3.6e+03 s ahead", answers[0])
 
-    def test_the_tracker_and_the_plant_on_different_hosts(self):
-        file = self.sandbox.folder / "split.yaml"
-        file.write_text(SPLIT)
-        self.launch(file, loss=0.2, delay=0.01)
-        self.assert_all_arrive(self.fly())
-
 
 class Discovery(LabTest):
     """Without multicast, by a discovery server on the ground."""
 
     def test_all_find_each_other_on_the_servers_host_too(self):
+        # What `fastdds discovery` starts, which it leaves alive when it is stopped itself.
+        server = shutil.which("fast-discovery-server")
+        if server is None:
+            self.skipTest("there is no fast-discovery-server: install fastdds-tools")
         for host in self.lab.hosts.values():
             host.namespace.ip("route", "del", "224.0.0.0/4")
             host.namespace.ip("link", "set", "eth0", "multicast", "off")
             host.env["ROS_DISCOVERY_SERVER"] = f"{lab.ADDRESSES['ground']}:11811"
         ground = self.lab.hosts["ground"]
-        ground.start("fastdds", "discovery", "--server-id", "0", "--ip-address", ground.address,
-                     "--port", "11811", env={"ROS_DISCOVERY_SERVER": ""})
+        ground.start(server, "--server-id", "0", "--ip-address", ground.address, "--port", "11811",
+                     env={"ROS_DISCOVERY_SERVER": ""})
         stack = self.stack = TwoHostStack(self.lab, "flight_hosts")
         stack.wait_ready(60.0)
         for host in self.lab.hosts.values():
@@ -208,6 +221,41 @@ class Discovery(LabTest):
         state = stack.fly_to(PLACES[0])
         self.assertIsNotNone(state, stack.tails())
         self.assertEqual(state["state"], "arrived", state)
+
+
+class Page(LabTest):
+    """The commands of docs/hosts.md, in their order, each on the host of its prompt."""
+
+    def commands(self):
+        for line in (harness.SOURCE / "docs/hosts.md").read_text(encoding="utf-8").splitlines():
+            match = re.match(r"    (vehicle|ground)\$ (.*)", line)
+            if match:
+                yield self.lab.hosts[match.group(1)], match.group(2)
+
+    def run_on(self, host, line):
+        words = shlex.split(line)
+        if words[0] == "export":
+            host.env.update([words[1].split("=", 1)])
+            return None
+        # `fastdds discovery` starts this, and leaves it alive when it is stopped itself.
+        if words[:2] == ["fastdds", "discovery"]:
+            return host.start("fast-discovery-server", *words[2:])
+        self.assertEqual(words[0], "tools/goshawk", line)
+        if words[1] == "launch":
+            process = host.start(GOSHAWK, *words[1:])
+            up = until(lambda: "every essential stage runs" in process.out(), 60.0)
+            self.assertTrue(up, str(process.outcome()))
+            return process
+        outcome = host.goshawk(*words[1:])
+        self.assertEqual(outcome.status, 0, str(outcome))
+        return None
+
+    def test_each_works(self):
+        commands = list(self.commands())
+        self.assertGreater(len(commands), 7)
+        endless = [self.run_on(host, line) for host, line in commands]
+        for process in filter(None, endless):
+            self.assertTrue(process.alive(), str(process.outcome()))
 
 
 class WithoutNamespaces(unittest.TestCase):

@@ -13,18 +13,21 @@ from harness import GOSHAWK, Publisher, SystemTest, node_of, note, until
 BRICK = (64, 8, 8)  # voxels
 
 
+STAMP = {"sec": 100, "nanosec": 0}  # of all odometry and clouds: the newest pose places them
+
+
 def cloud(points, frame="map", **changes):
     """A PointCloud2 of float32 x, y, z."""
     data = b"".join(struct.pack("<fff", *p) for p in points)
     fields = [{"name": n, "offset": 4 * k, "datatype": 7, "count": 1} for k, n in enumerate("xyz")]
-    return {"header": {"frame_id": frame}, "height": 1, "width": len(points), "fields": fields,
+    return {"header": {"frame_id": frame, "stamp": STAMP}, "height": 1, "width": len(points), "fields": fields,
             "is_bigendian": False, "point_step": 12, "row_step": 12 * len(points),
             "data": list(data), "is_dense": True, **changes}
 
 
 def odometry(position, frame="map", child="base_link"):
     x, y, z = position
-    return {"header": {"frame_id": frame}, "child_frame_id": child,
+    return {"header": {"frame_id": frame, "stamp": STAMP}, "child_frame_id": child,
             "pose": {"pose": {"position": {"x": x, "y": y, "z": z}, "orientation": {"w": 1.0}}}}
 
 
@@ -147,7 +150,12 @@ class LiveMap(MapCase):
                 (cloud(good, height=4_000_000_000), "invalid_input", "4000000000 x 1 points"),
                 (cloud(good, point_step=2), "invalid_input", "float32 field 'x'"),
                 (cloud(good, is_bigendian=True), "invalid_input", "big-endian"),
-                (cloud(good, fields=[]), "invalid_input", "float32 field 'x'")]:
+                (cloud(good, fields=[]), "invalid_input", "float32 field 'x'"),
+                (cloud(good, header={"frame_id": "map"}), "invalid_input", "stamp of a cloud is zero"),
+                (cloud(good, header={"frame_id": "map", "stamp": {"sec": 99}}), "tracking_lost",
+                 "before the oldest pose"),
+                (cloud(good, header={"frame_id": "map", "stamp": {"sec": 500}}), "tracking_lost",
+                 "after the newest pose")]:
             since = len(reports.lines())
             told = self.send_cloud(bad, lambda: first_with(
                 reports.lines()[since:], lambda r: word in r["message"]))

@@ -61,13 +61,15 @@ class States:
 class Stack:
     """Every stage launched in a world of its own, with the topics that tell what happens."""
 
-    def __init__(self, sandbox, file="flight", ros_args=(), env=None, options=()):
+    def __init__(self, sandbox, file="flight", ros_args=(), env=None, options=(),
+                 world_parameter="map_server:map_file"):
+        """@param world_parameter which parameter of which node names the world"""
         self.sandbox = sandbox
         self.world = sandbox.folder / "world.bt"
         made = sandbox.goshawk("world", self.world, "--json")
         if made.status != 0:
             raise AssertionError(f"the world could not be made: {made}")
-        self.launch = Launch(sandbox, file, "-p", f"map_server:map_file:={self.world}", *ros_args,
+        self.launch = Launch(sandbox, file, "-p", f"{world_parameter}:={self.world}", *ros_args,
                              env=env, options=options)
         self.reports = self.echo("stage_report")
         self.states = States(self.echo("navigator_state"))

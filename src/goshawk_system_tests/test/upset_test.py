@@ -81,7 +81,7 @@ class UpsetFlight(LegsCase):
         self.upset(act)
 
     def test_3_the_navigator_stops_for_longer_than_it_may(self):
-        self.upset(lambda: self.stall(["navigator"], 4.0), "tracker: stage_silent")
+        self.upset(lambda: self.stall(["navigator"], 10.0), "tracker: stage_silent")
 
     def test_4_all_stages_stop_at_once(self):
         self.upset(lambda: self.stall(SOFTWARE, self.draw.uniform(0.5, 3.0)),

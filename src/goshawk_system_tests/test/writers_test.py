@@ -13,9 +13,9 @@ PLACES = [(3.0, 8.0, 2.0), (3.0, 0.0, 1.0)]
 # topic: type, what its writer is called, who must refuse a second one
 GUARDED = {
     "map/voxels": ("goshawk_msgs/msg/VoxelGrid", "map_server",
-                   {"path_search", "corridor_builder", "navigator"}),
+                   {"path_search", "corridor_builder", "navigator", "tracker"}),
     "map/voxels/updates": ("goshawk_msgs/msg/VoxelGridUpdate", "map_server",
-                           {"path_search", "corridor_builder", "navigator"}),
+                           {"path_search", "corridor_builder", "navigator", "tracker"}),
     "octomap_binary": ("octomap_msgs/msg/Octomap", "map_server", {"flight_check"}),
     "plan_request": ("goshawk_msgs/msg/PlanRequest", "navigator",
                      {"path_search", "corridor_builder", "trajectory_optimizer"}),

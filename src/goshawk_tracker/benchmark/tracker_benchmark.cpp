@@ -27,6 +27,7 @@ void step(benchmark::State& state, const char* controller) {
   const int pieces = int(state.range(0));
   Config config;
   config.controller = controller;
+  config.require_map = false;
   auto tracker = Tracker::create(config).value();
   const auto committed = there_and_back(pieces);
   RigidBodyState body;
@@ -52,7 +53,9 @@ void step(benchmark::State& state, const char* controller) {
 }
 
 void accept(benchmark::State& state) {
-  auto tracker = Tracker::create({}).value();
+  Config config;
+  config.require_map = false;
+  auto tracker = Tracker::create(config).value();
   const auto committed = there_and_back(int(state.range(0)));
   RigidBodyState body;
   body.position_map = committed.nominal().start().position;

@@ -2,15 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "goshawk/conversions/plan.hpp"
+#include "goshawk/conversions/status.hpp"
 #include "goshawk/conversions/vehicle.hpp"
 #include "goshawk/runtime/component.hpp"
+#include "goshawk/stage/background_map.hpp"
 #include "goshawk/stage/intake.hpp"
-#include "goshawk/stage/map_subscription.hpp"
 #include "goshawk/stage/sender_clock.hpp"
-#include "goshawk/tracker/config.hpp"
+#include "goshawk/tracker/commit_gate.hpp"
 #include "goshawk/tracker/odometry_clock.hpp"
 #include "goshawk/tracker/tracker.hpp"
 
@@ -37,6 +37,12 @@ std::uint8_t to_msg(Mode mode) {
                 std::uint8_t(Mode::brake) == constants::MODE_BRAKE &&
                 std::uint8_t(Mode::land) == constants::MODE_LAND);
   return std::uint8_t(mode);
+}
+
+// Only whose verdicts count must be one process.
+std::uint8_t judging_stage(const msg::StageReport& m) {
+  const bool judges = conversions::stage_role_of(m.stage()) == StageRole::flight_check;
+  return judges ? m.stage() : std::uint8_t{0};
 }
 
 /// What a flight's control steps cost, and how evenly they came.
@@ -79,9 +85,9 @@ class StepStatistics {
   double longest_gap_ms_ = 0.0;
 };
 
-/// committed_trajectory, odom, navigator_alive -> command, tracking_state; and map/voxels, once
-/// there may be a landing. Counts on the monotonic clock: what others stamp with their wall clocks
-/// is brought to it once, when it arrives.
+/// committed_trajectory, odom, navigator_alive, map/voxels, stage_report of flight_check ->
+/// command, tracking_state. Counts on the monotonic clock: what others stamp with their wall clocks
+/// is brought to it once, when it arrives. Maps come in another thread.
 class TrackerComponent : public Component {
  public:
   explicit TrackerComponent(Node& node)
@@ -90,7 +96,9 @@ class TrackerComponent : public Component {
             node.parameters<Config>([this](const Config& c) { return tracker_.reconfigure(c); })),
         tracker_(make_tracker(config_)),
         odometry_clock_(config_.odometry_timeout_s),
+        gate_(config_),
         reporter_(node, StageRole::tracker, config_.controller),
+        map_(node),
         commands_(node.advertise<msg::AttitudeSetpoint>("command", Qos::best_effort())),
         states_(node.advertise<msg::TrackingState>("tracking_state", Qos::best_effort())) {
     node.subscribe<msg::CommittedTrajectory>(
@@ -108,17 +116,17 @@ class TrackerComponent : public Component {
           navigator_clock_.hear(conversions::to_ns(m.header().stamp()), node_.monotonic_ns());
         },
         Writers::one("navigator"));
+    if (config_.second_opinion != SecondOpinion::off) {
+      node.subscribe<msg::StageReport>(
+          "stage_report", Qos::reliable_last(50),
+          [this](const msg::StageReport& m, const MessageInfo&) { on_report(m); },
+          Writers::one_each<msg::StageReport>("stage_report", &judging_stage));
+    }
     node.every(0.05, [this] { watch(); });
     reporter_.ready("tracks with " + config_.controller);
   }
 
  private:
-  /// A commit, and what its start is on the monotonic clock.
-  struct Commit {
-    msg::CommittedTrajectory message;
-    std::int64_t start_ns = 0;
-  };
-
   void on_commit(const msg::CommittedTrajectory& m, const MessageInfo& info) {
     const Timing timing{.wire_ns = wire_time_ns(m.header(), info)};
     const std::int64_t now_ns = node_.monotonic_ns(), wall_ns = node_.now_ns();
@@ -126,22 +134,48 @@ class TrackerComponent : public Component {
     if (const Status clocks = SenderClock::check(skew_ns, "the navigator"); !clocks) {
       return reporter_.failed(m.nominal().request().id(), clocks.error(), timing);
     }
-    const std::int64_t start_ns =
-        conversions::to_ns(m.start_time()) - skew_ns + (now_ns - wall_ns);
-    // Latched, it can arrive before the first odometry does: it waits, as nothing is flown yet.
-    if (tracker_.status().mode == Mode::idle) {
-      waiting_ = Commit{m, start_ns};
-      return;
+    auto received = conversions::from_msg(m);
+    if (!received) {
+      return reporter_.failed(m.nominal().request().id(), received.error(), timing);
     }
-    accept(m, start_ns, timing);
+    const std::int64_t start_ns = received->start_time_ns() - skew_ns + (now_ns - wall_ns);
+    const auto old = gate_.put({*std::move(received), start_ns, now_ns, timing.wire_ns});
+    if (old) {
+      reporter_.failed(*old, fail(ErrorCode::cancelled,
+                                  fmt::format("trajectory {} waited to be checked, and a newer one "
+                                              "has come",
+                                              *old)));
+    }
+    take_waiting();
   }
 
-  void accept(const msg::CommittedTrajectory& m, std::int64_t start_ns, Timing timing) {
-    const std::uint64_t id = m.nominal().request().id();
-    auto received = conversions::from_msg(m);
-    if (!received) return reporter_.failed(id, received.error(), timing);
-    const auto [status, compute_ns] = timed(
-        [&] { return tracker_.accept(*std::move(received), start_ns, node_.monotonic_ns()); });
+  // What flight_check says of a trajectory.
+  void on_report(const msg::StageReport& m) {
+    if (conversions::stage_role_of(m.stage()) != StageRole::flight_check) return;
+    const ErrorCode code = conversions::error_code_of(m.code());
+    gate_.hear(m.request_id(), {code, m.message()});
+    if (code == ErrorCode::collision) {
+      tracker_.veto(m.request_id(), m.message(), node_.monotonic_ns());
+    }
+    take_waiting();
+  }
+
+  // The newest map, and the commit that may have waited for it.
+  void take_waiting() {
+    const std::int64_t now_ns = node_.monotonic_ns();
+    if (auto grid = map_.take()) tracker_.set_map(std::move(grid), now_ns);
+    if (const auto fault = map_.take_fault()) reporter_.fault(*fault);
+    if (!gate_.waits()) return;
+    const bool has_odometry = tracker_.status().mode != Mode::idle;
+    auto release = gate_.release(has_odometry, tracker_.map_version(), now_ns);
+    if (!release) return;
+    Commit& commit = release->commit;
+    const std::uint64_t id = commit.trajectory.id();
+    Timing timing{.wire_ns = commit.wire_ns};
+    if (!release->verdict) return reporter_.failed(id, release->verdict.error(), timing);
+    const auto [status, compute_ns] = timed([&] {
+      return tracker_.accept(std::move(commit.trajectory), commit.start_ns, now_ns);
+    });
     timing.compute_ns = compute_ns;
     if (!status) return reporter_.failed(id, status.error(), timing);
     accepted_ = timing;
@@ -162,10 +196,7 @@ class TrackerComponent : public Component {
     conversions::fill_msg(*command, command_message_);
     command_message_.header(conversions::make_header(node_.now_ns()));
     reporter_.send(commands_, command_message_);
-    if (waiting_) {
-      accept(waiting_->message, waiting_->start_ns, {});
-      waiting_.reset();
-    }
+    take_waiting();
     publish_state(sent_stamp_ns);
   }
 
@@ -198,11 +229,7 @@ class TrackerComponent : public Component {
   // What must be said when odometry or the navigator are silent.
   void watch() {
     tracker_.watch(node_.monotonic_ns());
-    // Not before: a large map would keep the control loop waiting while it is taken in.
-    if (tracker_.needs_map() && !map_) {
-      map_.emplace(node_, reporter_,
-                   [this](const auto& grid) { tracker_.set_map(grid, node_.monotonic_ns()); });
-    }
+    take_waiting();
     report_fault(tracker_.status());
   }
 
@@ -236,12 +263,12 @@ class TrackerComponent : public Component {
   Tracker tracker_;
   OdometryClock odometry_clock_;
   SenderClock navigator_clock_;
+  CommitGate gate_;
   StageReporter reporter_;
+  BackgroundMap map_;
   Publisher<msg::AttitudeSetpoint> commands_;
   Publisher<msg::TrackingState> states_;
   msg::AttitudeSetpoint command_message_;
-  std::optional<MapSubscription> map_;
-  std::optional<Commit> waiting_;
   StepStatistics steps_;
   Timing accepted_;       // of the newest trajectory that was
   std::string reported_;  // the newest fault's sentence

@@ -6,7 +6,19 @@
 
 namespace goshawk::tracker {
 
+namespace {
+
+constexpr std::size_t kMostPieces = 4096;
+
+}  // namespace
+
 Status admit(const CommittedTrajectory& committed, const Config& config) {
+  if (committed.flown().pieces.size() > kMostPieces) {
+    return fail(ErrorCode::invalid_input,
+                fmt::format("trajectory {} refused: it has {} pieces; each control step looks "
+                            "through them, and {} are allowed",
+                            committed.id(), committed.flown().pieces.size(), kMostPieces));
+  }
   const double mass = config.mass_kg;
   const ThrustUse use = thrust_of(committed.flown());
   if (respects(use,

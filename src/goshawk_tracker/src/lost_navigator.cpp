@@ -17,20 +17,14 @@ void Tracker::heard_navigator(std::int64_t now_ns) {
   landing_ = false;
 }
 
-void Tracker::set_map(std::shared_ptr<const VoxelGrid> grid, std::int64_t now_ns) {
-  guard_.set_map(std::move(grid));
-  stays_ = false;  // another map, another answer
-  if (!landing_ || reference_.at_rest(now_ns)) return;
+void Tracker::check_landing(std::int64_t now_ns) {
+  if (reference_.at_rest(now_ns)) return;
   const Vec3 place = reference_.at(now_ns).position;
   const Status answer = guard_.check(place);
   if (answer) return;
   brake(now_ns);
   landing_ = false;
   stay(answer.error(), place);
-}
-
-bool Tracker::needs_map() const {
-  return deserted_.code != ErrorCode::ok && rest_since_ns_ && guard_.needs_map();
 }
 
 void Tracker::watch_navigator(std::int64_t now_ns) {

@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "clock_time.hpp"
-#include "goshawk/tracker/stop.hpp"
 #include "goshawk/tracker/tracker.hpp"
 
 // What the tracker does when the vehicle may not be where it should be: it stops it where it is.
@@ -95,6 +94,15 @@ void Tracker::find_again(std::int64_t last_stamp_ns, std::int64_t now_ns) {
 
 void Tracker::stop_where_it_is(const Vec3& acceleration_map, std::int64_t last_stamp_ns,
                                std::int64_t now_ns) {
+  const FlatState vehicle{.position = state_.position_map,
+                          .velocity = state_.velocity_map,
+                          .acceleration = acceleration_map};
+  reference_.leave_by(plan_stop_from(vehicle, last_stamp_ns, now_ns).curve, stamp_ns_);
+  landing_ = false;
+}
+
+Stop Tracker::plan_stop_from(const FlatState& vehicle, std::int64_t last_stamp_ns,
+                             std::int64_t now_ns) const {
   std::optional<LeftPath> path;
   if (reference_.has_trajectory()) {
     path = LeftPath{
@@ -102,14 +110,10 @@ void Tracker::stop_where_it_is(const Vec3& acceleration_map, std::int64_t last_s
         .from_s = std::max(0.0, reference_.progress_s(last_stamp_ns) - kSearchBefore_s),
         .to_s = std::min(reference_.duration_s(), reference_.progress_s(now_ns) + kSearchAfter_s)};
   }
-  const FlatState vehicle{.position = state_.position_map,
-                          .velocity = state_.velocity_map,
-                          .acceleration = acceleration_map};
-  const auto is_free = [](const BezierPiece&) { return false; };  // no map: the shortest stop
   const StopLimits limits{.gentle_m_s2 = config_.brake_acceleration_m_s2,
                           .hardest_m_s2 = config_.stop_acceleration_m_s2};
-  reference_.leave_by(plan_stop(vehicle, path, limits, is_free), stamp_ns_);
-  landing_ = false;
+  const auto contact = [this](const BezierPiece& curve) { return map_.first_contact(curve); };
+  return plan_stop(vehicle, path, limits, contact);
 }
 
 void Tracker::watch_error(std::int64_t now_ns) {
@@ -119,7 +123,8 @@ void Tracker::watch_error(std::int64_t now_ns) {
   max_error_m_ = std::max(max_error_m_, error_m_);
   ++samples_;
   if (error_m_ <= config_.error_allowance_m) return;
-  const bool follows = lost_.code == ErrorCode::ok && !landing_ && !reference_.at_rest(now_ns);
+  const bool stops_already = lost_.code != ErrorCode::ok && !reference_.follows();
+  const bool follows = !stops_already && !landing_ && !reference_.at_rest(now_ns);
   lose(fail(ErrorCode::tracking_lost,
             "the vehicle is " + number(error_m_) +
                 " m from where it should be, more than the allowance of " +
@@ -138,7 +143,7 @@ void Tracker::lose(const Error& why, std::int64_t since_ns) {
     return;
   }
   lost_ = why;
-  lost_id_ = rests ? queue_.front().committed().id() : followed_id();
+  lost_id_ = newest_id();
   queue_.clear();
   if (whereabouts_lost_ && !landing_) reference_.brake(since_ns, config_.brake_acceleration_m_s2);
 }

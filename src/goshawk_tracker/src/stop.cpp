@@ -16,6 +16,8 @@ constexpr double kNear_m = 0.3;
 constexpr double kReturnSpeed_m_s = 0.3;
 constexpr double kSearchStep_s = 0.02;
 constexpr double kWalkStep_s = 0.005;
+constexpr double kLongestWalk_s = 5.0;
+constexpr double kEqual_s = 1e-3;  // contacts that come within this time come together
 
 struct PathPoint {
   double time_s;
@@ -33,9 +35,10 @@ PathPoint nearest(const LeftPath& path, const Vec3& position) {
   return best;
 }
 
-/// The point that lies `distance_m` farther along the path, or its end.
+/// The point that lies `distance_m` farther along the path, or its end, or where a path that hardly
+/// moves has got to by then.
 Vec3 farther(const Trajectory& path, double time_s, double distance_m) {
-  const double end_s = path.duration_s();
+  const double end_s = std::min(path.duration_s(), time_s + kLongestWalk_s);
   Vec3 position = path.sample(time_s).position;
   for (double left = distance_m; left > 0.0 && time_s < end_s;) {
     time_s = std::min(end_s, time_s + kWalkStep_s);
@@ -49,8 +52,8 @@ Vec3 farther(const Trajectory& path, double time_s, double distance_m) {
 class StopPlanner {
  public:
   StopPlanner(const FlatState& vehicle, const std::optional<LeftPath>& path,
-              const StopLimits& limits, const IsFree& is_free)
-      : vehicle_(vehicle), limits_(limits), is_free_(is_free) {
+              const StopLimits& limits, const FirstContact& first_contact)
+      : vehicle_(vehicle), limits_(limits), first_contact_(first_contact) {
     // Speeding up ends at once: a stop is never faster than the vehicle was.
     const Vec3 ahead = vehicle.velocity.stableNormalized();
     vehicle_.acceleration -= std::max(0.0, ahead.dot(vehicle.acceleration)) * ahead;
@@ -62,22 +65,31 @@ class StopPlanner {
     tangent_ = path_->sample(point.time_s).velocity.stableNormalized();
   }
 
-  BezierPiece plan() const {
+  Stop plan() const {
+    std::optional<Stop> best;
     const double ratio = limits_.hardest_m_s2 / limits_.gentle_m_s2;
     for (const double power : {0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0}) {
       const double deceleration = limits_.gentle_m_s2 * std::pow(ratio, power);
-      if (path_ != nullptr) {
-        const BezierPiece back = back_to_path(deceleration);
-        if (is_good(back)) return back;
+      // Of equal ones: a harder stop rather than a gentler one, back to the path rather than ahead.
+      double later_by_s = -kEqual_s;
+      for (const bool back : {true, false}) {
+        if (back && path_ == nullptr) continue;
+        const BezierPiece curve = back ? back_to_path(deceleration) : straight(deceleration);
+        if (!is_within_limits(curve)) continue;
+        const Stop stop{curve, first_contact_(curve)};
+        if (!stop.enters_s) return stop;
+        if (!best || *stop.enters_s > *best->enters_s + later_by_s) best = stop;
+        later_by_s = kEqual_s;
       }
-      const BezierPiece ahead = straight(deceleration);
-      if (is_good(ahead)) return ahead;
     }
-    return path_ != nullptr ? back_to_path(limits_.hardest_m_s2) : straight(limits_.hardest_m_s2);
+    if (best) return *best;
+    const BezierPiece hardest =
+        path_ != nullptr ? back_to_path(limits_.hardest_m_s2) : straight(limits_.hardest_m_s2);
+    return {hardest, first_contact_(hardest)};
   }
 
  private:
-  bool is_good(const BezierPiece& piece) const {
+  bool is_within_limits(const BezierPiece& piece) const {
     const double hardest = std::max(limits_.hardest_m_s2, vehicle_.acceleration.norm());
     const double fastest = std::max(vehicle_.velocity.norm(), 2.0 * kReturnSpeed_m_s);
     for (int i = 0; i <= kSamples; ++i) {
@@ -86,7 +98,7 @@ class StopPlanner {
           state.velocity.norm() <= 1.05 * fastest && state.acceleration.norm() <= 1.05 * hardest;
       if (!within) return false;
     }
-    return is_free_(piece);
+    return true;
   }
 
   BezierPiece straight(double deceleration) const {
@@ -107,7 +119,7 @@ class StopPlanner {
 
   FlatState vehicle_;
   StopLimits limits_;
-  const IsFree& is_free_;
+  const FirstContact& first_contact_;
   const Trajectory* path_ = nullptr;
   PathPoint point_{0.0, 0.0};
   Vec3 tangent_ = Vec3::Zero();
@@ -115,9 +127,9 @@ class StopPlanner {
 
 }  // namespace
 
-BezierPiece plan_stop(const FlatState& vehicle, const std::optional<LeftPath>& path,
-                      const StopLimits& limits, const IsFree& is_free) {
-  return StopPlanner(vehicle, path, limits, is_free).plan();
+Stop plan_stop(const FlatState& vehicle, const std::optional<LeftPath>& path,
+               const StopLimits& limits, const FirstContact& first_contact) {
+  return StopPlanner(vehicle, path, limits, first_contact).plan();
 }
 
 }  // namespace goshawk::tracker

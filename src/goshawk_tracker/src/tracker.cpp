@@ -15,6 +15,13 @@ namespace {
 
 const Error kNoFault{ErrorCode::ok, ""};
 constexpr double kSayStall_s = 1.0;
+// Beyond these no odometry is true, and squares of it would not be finite.
+constexpr double kFarthest_m = 1e6;
+constexpr double kFastest_m_s = 1e3;
+constexpr double kFastest_rad_s = 1e3;
+// What waits is checked with every map: its number and its wait are bounded.
+constexpr std::size_t kMostQueued = 8;
+constexpr double kFarthestStart_s = 60.0;
 
 }  // namespace
 
@@ -40,7 +47,7 @@ Result<Tracker> Tracker::create(const Config& config) {
 }
 
 Tracker::Tracker(const Config& config)
-    : config_(config), controller_(config), guard_(config.landing, config.land_height_m) {}
+    : config_(config), controller_(config), guard_(config.landing, config.land_height_m), map_(config.require_map) {}
 
 Status Tracker::reconfigure(const Config& config) {
   if (auto status = check(config); !status) return status;
@@ -54,7 +61,16 @@ Status Tracker::accept(CommittedTrajectory committed, std::int64_t start_ns, std
   auto candidate = Reference::follow(
       std::make_shared<const CommittedTrajectory>(std::move(committed)), start_ns);
   if (auto status = check_start(candidate, now_ns); !status) return status;
-  std::erase_if(queue_, [&](const Reference& queued) { return queued.start_ns() >= start_ns; });
+  const double from_s = std::max(0.0, seconds(start_ns, now_ns));
+  if (auto status = map_.check(candidate.committed(), from_s); !status) return status;
+  const auto first_later = std::ranges::find_if(
+      queue_, [&](const Reference& queued) { return queued.start_ns() >= start_ns; });
+  if (first_later - queue_.begin() >= std::ptrdiff_t(kMostQueued)) {
+    return fail(ErrorCode::not_at_start,
+                fmt::format("trajectory {} refused: {} trajectories wait for their start before it",
+                            candidate.committed().id(), kMostQueued));
+  }
+  queue_.erase(first_later, queue_.end());
   queue_.push_back(std::move(candidate));
   return success();
 }
@@ -63,8 +79,14 @@ Status Tracker::check_start(const Reference& candidate, std::int64_t now_ns) con
   const auto refuse = [&](ErrorCode code, const std::string& why) {
     return fail(code, fmt::format("trajectory {} refused: {}", candidate.committed().id(), why));
   };
-  if (!within_bound(now_ns)) {
-    return refuse(ErrorCode::invalid_input, "the current time is outside the supported range");
+  if (!within_bound(now_ns) || !within_bound(candidate.start_ns())) {
+    return refuse(ErrorCode::invalid_input,
+                  "its start or the current time is outside the supported range");
+  }
+  if (seconds(now_ns, candidate.start_ns()) > kFarthestStart_s) {
+    return refuse(ErrorCode::not_at_start,
+                  fmt::format("it begins {:.3g} s from now: commit it {:g} s ahead at the most",
+                              seconds(now_ns, candidate.start_ns()), kFarthestStart_s));
   }
   if (!has_state_) {
     return refuse(ErrorCode::not_at_start, "there is no odometry yet to tell where the vehicle is");
@@ -133,7 +155,7 @@ Result<AttitudeSetpoint> Tracker::step(const RigidBodyState& state, std::int64_t
   const std::int64_t ahead_ns = now_ns + std::llround(config_.actuation_delay_s * 1e9);
   return controller_.step(state_,
                           {.now = reference_.at(stamp_ns_),
-                           .ahead = reference_.at(ahead_ns),
+                           .ahead = reference_at(ahead_ns),
                            .yaw_rad = yaw_rad_,
                            .yaw_rate_rad_s = yaw_rate},
                           since_last_s_);
@@ -147,6 +169,13 @@ Status Tracker::check_odometry(const RigidBodyState& state, std::int64_t stamp_n
   if (!within_bound(stamp_ns) || !within_bound(now_ns))
     return invalid("its timestamp is outside the supported range");
   if (!state.is_finite()) return invalid("a number in it is not finite");
+  if (state.position_map.cwiseAbs().maxCoeff() > kFarthest_m ||
+      state.velocity_map.cwiseAbs().maxCoeff() > kFastest_m_s ||
+      state.angular_velocity_base.cwiseAbs().maxCoeff() > kFastest_rad_s) {
+    return invalid("no vehicle is at " + to_text(state.position_map) + " m with " +
+                   to_text(state.velocity_map) + " m/s and " +
+                   to_text(state.angular_velocity_base) + " rad/s");
+  }
   if (!(std::abs(state.q_map_base.norm() - 1.0) <= 1e-3)) {
     return invalid("its quaternion has length " + number(state.q_map_base.norm()) + ", not one");
   }
@@ -221,6 +250,14 @@ void Tracker::switch_trajectories(std::int64_t now_ns) {
 
 std::uint64_t Tracker::followed_id() const {
   return reference_.has_trajectory() ? reference_.committed().id() : 0;
+}
+
+std::uint64_t Tracker::newest_id() const {
+  return queue_.empty() ? followed_id() : queue_.back().committed().id();
+}
+
+std::optional<std::uint64_t> Tracker::map_version() const {
+  return map_.grid() != nullptr ? std::optional(map_.grid()->version) : std::nullopt;
 }
 
 double Tracker::wanted_yaw(std::int64_t now_ns) const {

@@ -30,6 +30,18 @@ TEST(Admission, ThrustOrTiltBeyondTheTrackersBoundsIsRefusedWithTheWayOut) {
   EXPECT_THAT(status.error().message, HasSubstr("trajectory " + std::to_string(draft.id)));
 }
 
+TEST(Admission, MorePiecesThanAControlStepCanLookThroughAreRefused) {
+  const auto hover = [](std::size_t pieces) {
+    Draft draft;
+    draft.trajectory.pieces.assign(pieces, BezierPiece::between({}, {}, 0.01));
+    certify_as_is(draft);
+    draft.limits = {1.0, 1.0};
+    return draft;
+  };
+  EXPECT_TRUE(admit(hover(4096), Config{}));
+  EXPECT_EQ(admit(hover(4097), Config{}).code(), ErrorCode::invalid_input);
+}
+
 TEST(Admission, FallingFasterThanTheLeastThrustAllowsIsRefused) {
   auto draft = straight_line({0, 0, 30}, {0, 0, 1}, 3.5);
   EXPECT_EQ(admit(draft, Config{}).code(), ErrorCode::trajectory_infeasible);

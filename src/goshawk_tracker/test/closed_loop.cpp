@@ -15,7 +15,7 @@ constexpr std::size_t kSocketHolds = 100;  // messages; later ones are dropped
 ClosedLoop::ClosedLoop(const Config& tracker_config, const simulator::Config& vehicle_config,
                        Link with_link)
     : vehicle(simulator::Quadrotor::create(vehicle_config).value()),
-      tracker(Tracker::create(tracker_config).value()),
+      tracker(Tracker::create(without_map(tracker_config)).value()),
       link(std::move(with_link)) {}
 
 void ClosedLoop::run_until(std::int64_t end_ns, const std::function<void()>& each) {

@@ -185,13 +185,10 @@ TEST(FailuresInFlight, WithoutTheNavigatorTheEndIsHeldThenLandedFrom) {
   loop.run_until(loop.vehicle.time_ns() + 2'100'000'000);
   EXPECT_EQ(loop.tracker.status().mode, Mode::follow);
   EXPECT_EQ(loop.tracker.status().fault.code, ErrorCode::stage_silent);
-  EXPECT_FALSE(loop.tracker.needs_map());  // not in flight, where taking one in would disturb
   loop.run_until(12 * kSecond);
   EXPECT_EQ(loop.tracker.status().mode, Mode::hold);
   EXPECT_LT((loop.vehicle.state().position_map - Vec3(0, 10, 1)).norm(), 0.01);
-  EXPECT_TRUE(loop.tracker.needs_map());
   loop.tracker.set_map(room(0.0), loop.vehicle.time_ns());
-  EXPECT_FALSE(loop.tracker.needs_map());
   loop.run_until(22 * kSecond);
   EXPECT_EQ(loop.tracker.status().mode, Mode::land);
   EXPECT_NE(loop.tracker.status().fault.message.find("landing"), std::string::npos);
@@ -249,7 +246,6 @@ TEST(FailuresInFlight, TheRuleOfLandingIsAsConfigured) {
     auto& loop = flight.loop;
     loop.tracker.heard_navigator(loop.vehicle.time_ns());
     loop.run_until(40 * kSecond);
-    EXPECT_FALSE(loop.tracker.needs_map());
     const auto status = loop.tracker.status();
     EXPECT_EQ(status.mode, rule == LandingRule::never ? Mode::hold : Mode::land);
     EXPECT_EQ(status.fault.code,
@@ -292,7 +288,7 @@ TEST(FailuresInFlight, BrakingOnDemandStaysOnThePath) {
   loop.tracker.brake(loop.vehicle.time_ns());
   loop.run_until(loop.vehicle.time_ns() + 3 * kSecond,
                  [&] { EXPECT_LT(std::abs(loop.vehicle.state().position_map.x()), 0.02); });
-  EXPECT_NEAR(loop.vehicle.state().position_map.y() - begin, 1.0, 0.05);  // v^2 / 2a
+  EXPECT_NEAR(loop.vehicle.state().position_map.y() - begin, 1.5, 0.05);  // 3/4 v^2 / a
   EXPECT_EQ(loop.tracker.status().mode, Mode::hold);
 }
 

@@ -64,7 +64,11 @@ TEST(Reference, BrakingStaysOnThePathAndComesToRest) {
       EXPECT_LT(distance_to_path(reference.committed().flown(), s.position), 2e-3);
       EXPECT_LE(s.acceleration.norm(), 2.0 + 2.5);
     }
-    const double T = std::max(0.5, speed / 2.0);
+    EXPECT_LT((reference.at(nanoseconds(begin) + 1000).acceleration -
+               reference.at(nanoseconds(begin) - 1000).acceleration)
+                  .norm(),
+              1e-3);
+    const double T = std::max(0.5, 1.5 * speed / 2.0);
     EXPECT_TRUE(reference.at_rest(nanoseconds(begin + T) + 1));
     EXPECT_FALSE(reference.at_rest(nanoseconds(begin + T - 0.01)));
     EXPECT_EQ(reference.at(nanoseconds(begin + T) + 1).velocity, Vec3::Zero());
@@ -84,6 +88,35 @@ TEST(Reference, DerivativesAreThoseOfThePosition) {
       EXPECT_LT((slope(at(t - h).position, at(t + h).position) - s.velocity).norm(), 1e-5);
       EXPECT_LT((slope(at(t - h).velocity, at(t + h).velocity) - s.acceleration).norm(), 1e-5);
       EXPECT_LT((slope(at(t - h).acceleration, at(t + h).acceleration) - s.jerk).norm(), 1e-3);
+    }
+  }
+}
+
+// What is in the way counts only as far as the reference gets, and when it gets there.
+TEST(Reference, TellsWhenItMeetsAnObstacleBrakingOrNot) {
+  VoxelGrid grid;
+  grid.geometry = {.origin_map = Vec3::Constant(-20.0), .resolution_m = 0.1, .size = {400, 400, 400}};
+  grid.grown = BitGrid(grid.geometry.size, true);
+  for (const double begin : {0.5, 1.5, 3.0}) {
+    for (const bool brakes : {false, true}) {
+      auto reference = make(0);
+      if (brakes) reference.brake(nanoseconds(begin), 1.0);
+      for (const double ahead : {0.1, 0.4, 0.7, 30.0}) {
+        const Vec3 place = reference.at(nanoseconds(begin + ahead)).position;
+        const Index3 voxel = grid.geometry.index_of(place).value();
+        VoxelGrid blocked = grid;
+        blocked.grown.set(voxel, true);
+        const auto found = reference.find_obstruction(blocked, nanoseconds(begin));
+        ASSERT_TRUE(found);
+        EXPECT_EQ(found->voxel, voxel);
+        EXPECT_LE(found->time_s, ahead);
+        const auto enters =
+            reference.at(nanoseconds(begin + found->time_s)).position - blocked.geometry.center(voxel);
+        EXPECT_LT(enters.cwiseAbs().maxCoeff(), 0.05 + 0.03) << "at the voxel's face";
+        EXPECT_FALSE(reference.find_obstruction(
+            blocked, nanoseconds(begin), nanoseconds(begin + std::max(0.0, found->time_s - 0.01))));
+      }
+      EXPECT_FALSE(reference.find_obstruction(grid, nanoseconds(begin)));
     }
   }
 }

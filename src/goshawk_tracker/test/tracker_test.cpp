@@ -19,7 +19,7 @@ std::int64_t ns(double s) {
 }
 
 Tracker make(const Config& config = {}) {
-  return Tracker::create(config).value();
+  return Tracker::create(without_map(config)).value();
 }
 
 RigidBodyState at(const Vec3& p, const Vec3& v = Vec3::Zero()) {
@@ -128,6 +128,24 @@ TEST(Tracker, ALaterPlanReplacesWhatIsQueuedForTheSameTimeOrAfter) {
   EXPECT_EQ(other.status().queued, 3);
 }
 
+// Nobody fills the tracker's memory, or its time with every map.
+TEST(Tracker, WhatWaitsIsBounded) {
+  auto tracker = make();
+  ASSERT_TRUE(tracker.step(at({0, 0, 1}), 0));
+  int accepted = 0;
+  for (int k = 0; k < 50; ++k) {
+    const auto status = tracker.accept(line(std::uint64_t(k + 1), {0, 0, 1}, {0.01, 0, 1}, 1.0 + k), 0);
+    accepted += int(status.ok());
+    EXPECT_THAT(status.code(), testing::AnyOf(ErrorCode::ok, ErrorCode::not_at_start));
+  }
+  EXPECT_EQ(accepted, 8);
+  EXPECT_EQ(tracker.status().queued, 8);
+  EXPECT_TRUE(tracker.accept(line(99, {0, 0, 1}, {1, 0, 1}, 0.5), 0)) << "takes the place of all";
+  EXPECT_EQ(tracker.status().queued, 1);
+  EXPECT_EQ(tracker.accept(line(100, {0, 0, 1}, {1, 0, 1}, 3e8), 0).code(),
+            ErrorCode::not_at_start);
+}
+
 TEST(Tracker, ATrajectoryThatBeganIsJoinedWhereItShouldBeByNow) {
   auto tracker = make();
   const auto committed = line(1, {0, 0, 1}, {2, 0, 1}, 0.0);
@@ -217,7 +235,7 @@ TEST(Tracker, AfterAPauseOfItsOwnItTakesNothingUntilItKnowsWhereTheVehicleIs) {
   ASSERT_TRUE(tracker.accept(replanned(2, first, 1.5, {4, 2, 1}), ns(1.0)));
   tracker.watch(ns(1.6));  // the second one's time has come meanwhile
   EXPECT_EQ(tracker.status().fault.code, ErrorCode::process_stalled);
-  EXPECT_EQ(tracker.status().lost_trajectory_id, 1U);
+  EXPECT_EQ(tracker.status().lost_trajectory_id, 2U);
   EXPECT_EQ(tracker.status().queued, 0);
   const auto status = tracker.accept(replanned(3, first, 1.6, {4, 2, 1}), ns(1.6));
   EXPECT_EQ(status.code(), ErrorCode::not_at_start);

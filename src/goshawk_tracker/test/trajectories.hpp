@@ -6,8 +6,15 @@
 
 #include "goshawk/core/committed_trajectory.hpp"
 #include "goshawk/core/random.hpp"
+#include "goshawk/tracker/config.hpp"
 
 namespace goshawk::tracker {
+
+/// Flies what no map was asked about, until one comes.
+inline Config without_map(Config config = {}) {
+  config.require_map = false;
+  return config;
+}
 
 /// What becomes a committed trajectory; tests change it first.
 struct Draft {

@@ -59,6 +59,20 @@ void add_dds(const Verb& bench) {
   });
 }
 
+void add_map(const Verb& bench) {
+  const Verb verb = bench.word("map", "scans into the live map, growth included, beside OctoMap");
+  const auto common = add_common(verb);
+  auto cloud = std::make_shared<std::string>();
+  verb->add_option("--cloud", *cloud,
+                   "a scan as .pcd or .ply in its sensor's frame; default: a made hall");
+  verb->footer("Example:\n  goshawk bench map --quick");
+  verb.runs([=](const Console& c) {
+    Json options = common_json(*common);
+    options["cloud"] = *cloud;
+    return become_bench("map", options, c);
+  });
+}
+
 void add_scenario(const Verb& bench) {
   struct Options {
     std::string map, scenario;
@@ -129,6 +143,7 @@ void add_bench(Program& program) {
   add_plain(bench, "search", "grid searches beside a plain A*: time, nodes, length, growth");
   add_scenario(bench);
   add_plain(bench, "corridor", "corridor generators: time, volume, faces, obstacles cut");
+  add_map(bench);
   add_plain(bench, "updates", "what an update of a large map costs each stage that follows it");
   add_plain(bench, "trajectory", "planners: durations, speeds, optimisation and whole plans");
   add_plain(bench, "sensors", "simulated lidars and cameras: what a ray costs in each world");

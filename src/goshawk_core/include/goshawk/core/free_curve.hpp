@@ -1,6 +1,8 @@
 #pragma once
 
+#include <limits>
 #include <optional>
+#include <string>
 
 #include "goshawk/core/committed_trajectory.hpp"
 #include "goshawk/core/grid_geometry.hpp"
@@ -22,12 +24,16 @@ struct Obstruction {
 ///
 /// @param from_s, to_s [s] the part that is looked at, cut to the curve
 /// @return the first obstruction, or nothing: then that part is free
-std::optional<Obstruction> find_obstruction(const VoxelGrid& grid, const BezierPiece& curve,
-                                            double from_s = 0.0);
+std::optional<Obstruction> find_obstruction(
+    const VoxelGrid& grid, const BezierPiece& curve, double from_s = 0.0,
+    double to_s = std::numeric_limits<double>::infinity());
 std::optional<Obstruction> find_obstruction(const VoxelGrid& grid, const Trajectory& trajectory,
                                             double from_s, double to_s);
 
 inline constexpr double kTouch_m = 1e-5;
+
+/// For sentences: "map 7 has an obstacle at (1, 2, 3) m".
+std::string to_text(const VoxelGrid& grid, const Obstruction& found);
 
 /// Is what is left of a committed trajectory free? Looks at what is flown when nothing newer comes.
 /// @param from_s [s] since its start

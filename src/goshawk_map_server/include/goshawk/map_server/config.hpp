@@ -8,6 +8,7 @@
 #include "goshawk/core/result.hpp"
 #include "goshawk/map_server/live_map.hpp"
 #include "goshawk/map_server/map_file.hpp"
+#include "goshawk/map_server/pose_buffer.hpp"
 #include "goshawk/map_server/voxel_map.hpp"
 
 namespace goshawk::map_server {
@@ -39,6 +40,16 @@ struct Config {
   int hits_needed = 2;
   int misses_needed = 4;
   double body_radius_m = 0.2;
+  std::string sensor_frame = "";
+  double sensor_x_m = 0.0;
+  double sensor_y_m = 0.0;
+  double sensor_z_m = 0.0;
+  double sensor_roll_rad = 0.0;
+  double sensor_pitch_rad = 0.0;
+  double sensor_yaw_rad = 0.0;
+  double pose_wait_s = 0.2;
+  double pose_max_gap_s = 0.5;
+  int max_points = 1'000'000;
   bool publish_raw = false;
   std::string journal_file = "";
 };
@@ -105,6 +116,24 @@ void describe(Self& c, Visitor&& visit) {
         "points of a scan nearer than this to the vehicle's centre are the vehicle itself, and the "
         "space it flew through is free; 0: neither",
         Range{0.0, 100.0});
+  visit("sensor_frame", c.sensor_frame, "",
+        "a sensor's frame that is not on /tf_static: the parameters below place it in base_link",
+        Anything{});
+  visit("sensor_x_m", c.sensor_x_m, "m", "place of sensor_frame in base_link", Anything{});
+  visit("sensor_y_m", c.sensor_y_m, "m", "place of sensor_frame in base_link", Anything{});
+  visit("sensor_z_m", c.sensor_z_m, "m", "place of sensor_frame in base_link", Anything{});
+  visit("sensor_roll_rad", c.sensor_roll_rad, "rad",
+        "attitude of sensor_frame in base_link: about x, then y, then z, all of base_link",
+        Anything{});
+  visit("sensor_pitch_rad", c.sensor_pitch_rad, "rad", "the same about y", Anything{});
+  visit("sensor_yaw_rad", c.sensor_yaw_rad, "rad", "the same about z", Anything{});
+  visit("pose_wait_s", c.pose_wait_s, "s",
+        "how long a cloud waits for odometry as new as its last point; then it is dropped",
+        Range{0.0, 10.0});
+  visit("pose_max_gap_s", c.pose_max_gap_s, "s",
+        "no pose is interpolated between odometry farther apart than this", Range{0.0, 10.0});
+  visit("max_points", c.max_points, "", "clouds with more points are refused",
+        Range{1.0, 100'000'000.0});
   visit(
       "publish_raw", c.publish_raw, "",
       "map/voxels also brings the obstacles as measured: a corridor_builder with margin sphere "
@@ -121,5 +150,7 @@ LoadOptions load_options(const Config& config);
 VoxelizeOptions voxelize_options(const Config& config);
 Growth growth(const Config& config);
 Result<LiveOptions> live_options(const Config& config);
+/// sensor_frame in base_link
+Pose sensor_mount(const Config& config);
 
 }  // namespace goshawk::map_server

@@ -68,6 +68,10 @@ struct MapSource {
   std::vector<std::string> notes;      // what was assumed, or looks wrong; sentences
 };
 
+/// The points of a .pcd or .ply file as they stand there, not finite ones included, without any
+/// voxels. @return map_unreadable, map_malformed
+Result<std::vector<Vec3>> load_points(const std::string& path);
+
 /// The voxels of a map that was read, as voxelize() gives them for a tree.
 Result<RawVoxels> voxelize(const MapSource& source, const VoxelizeOptions& options = {});
 

@@ -49,6 +49,10 @@ struct JournalContent {
 
   /// Writes the bricks into a map that covers them; those beyond it are left out.
   void write_into(RawVoxels& map) const;
+
+  /// The map on a raster that also covers all bricks, unknown in between.
+  /// @return map_too_large beyond max_voxels
+  Result<RawVoxels> widened(const RawVoxels& map, std::int64_t max_voxels) const;
 };
 
 /// @param bytes of a whole file

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <concepts>
+#include <string>
 #include <type_traits>
 
 #include "goshawk/core/parameter.hpp"
@@ -27,6 +28,7 @@ struct Config {
   bool require_map = true;
   double map_wait_s = 0.5;
   double map_retry_s = 5.0;
+  std::string memory_file;
 
   Limits limits() const {
     return {.v_max_m_s = v_max_m_s,
@@ -105,6 +107,10 @@ void describe(Self& c, Visitor&& visit) {
   visit("odometry_timeout_s", c.odometry_timeout_s, "s", "odometry older than this is not used",
         Range::positive(60.0));
   detail::describe_map(c, visit);
+  visit("memory_file", c.memory_file, "",
+        "file that keeps the goal and what is flown, so that a restarted navigator goes on with "
+        "them; a launch sets it; empty: none",
+        Anything{});
 }
 
 }  // namespace goshawk::navigator

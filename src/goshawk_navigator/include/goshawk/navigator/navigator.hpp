@@ -53,7 +53,7 @@ struct Memory {
   std::uint64_t newest_id = 0;
   Goal goal;
   bool open = false;      // no committed trajectory leads to the goal yet
-  std::vector<Leg> legs;  // by start
+  std::vector<Leg> legs = {};  // by start
 };
 
 /// From goals to committed trajectories. Knows no middleware and no clock: every event brings the

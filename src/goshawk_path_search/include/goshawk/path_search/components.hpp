@@ -70,7 +70,8 @@ class Components {
   void label(Index3 at, Brick& brick);
   void link(Index3 at, Brick& brick);
   void unite_all();
-  std::uint64_t free_row(Index3 brick, int row) const;
+  using Rows = std::array<std::uint64_t, kRows>;
+  Rows free_rows(Index3 brick) const;
   bool contains(Index3 brick) const;
   Index3 place(std::size_t brick) const;
   std::size_t number(Index3 brick) const {

@@ -17,6 +17,7 @@ struct Config {
   CornerRule corner_rule = CornerRule::no_squeeze;
   Pruning pruning = Pruning::shortest;
   double time_limit_s = 10.0;
+  bool reuse_path = false;
 
   double move_within_m = 0.0;
   bool nearest_reachable = false;
@@ -56,6 +57,12 @@ void describe(Self& c, Visitor&& visit) {
         AtRunTime{Anything{}});
   visit("time_limit_s", c.time_limit_s, "s",
         "longest search; a request's own deadline may be shorter", AtRunTime{Range::positive(1e6)});
+  visit(
+      "reuse_path", c.reuse_path, "",
+      "for the same goal again, with the start on the last path: keep the rest of that path while "
+      "no change of the map blocks it or could make a shorter one; a path's length is as without, "
+      "of equally long paths it may be another one; jastar, astar, astar_euclidean, dijkstra",
+      AtRunTime{Anything{}});
   visit("move_within_m", c.move_within_m, "m",
         "a start or goal in an obstacle is moved to the nearest free voxel up to this far; 0: it "
         "is refused",

@@ -21,28 +21,25 @@ inline constexpr int kCostBits = 43;
 inline constexpr Cost kMaxCost = (Cost{1} << kCostBits) - 1;  // 4 million voxels
 inline constexpr Label kExpanded = 1;
 
-/// One label a node, 8 bytes. The memory is mapped, not written: on a big map the pages that no
-/// search touches are never made. Pages are asked to be large, for a search jumps between layers
-/// that lie megabytes apart.
-class LabelTable {
+/// Memory of zeros for labels. It is mapped, not written: pages that no search touches are never
+/// made.
+class LabelMemory {
  public:
-  /// All labels empty. @return false where there is no memory for so many
-  bool resize(std::int64_t nodes);
+  /// All labels empty. @return false if there is no memory for so many
+  bool resize(std::size_t labels);
+  Label* data() const { return labels_.get(); }
 
-  /// Forgets all labels. Once in 32767 queries the table is renewed, at the price of resize().
-  /// @return false where that found no memory
-  bool start_query() {
-    if (query_ == kLastQuery && !resize(nodes_)) return false;
-    ++query_;
-    root_ = (query_ << 49) | (Label(kMaxCost) << 6);
-    return true;
-  }
+ private:
+  struct Unmap {
+    std::size_t bytes;
+    void operator()(Label* labels) const;
+  };
+  std::unique_ptr<Label, Unmap> labels_;
+};
 
-  Label& operator[](std::uint32_t node) { return labels_.get()[node]; }
-  Label operator[](std::uint32_t node) const { return labels_.get()[node]; }
-
-  const Label* at(std::uint32_t node) const { return labels_.get() + node; }
-
+/// What labels of one query have in common.
+class QueryLabels {
+ public:
   /// The label of cost 0, without direction.
   Label root() const { return root_; }
   bool is_current(Label label) const { return label >> 49 == query_; }
@@ -58,17 +55,35 @@ class LabelTable {
     return (candidate & ~Label{63}) > (held | 63U);
   }
 
- private:
-  struct Unmap {
-    std::size_t bytes;
-    void operator()(Label* labels) const;
-  };
+ protected:
   static constexpr Label kLastQuery = (Label{1} << 15) - 1;
 
-  std::unique_ptr<Label, Unmap> labels_;
-  std::int64_t nodes_ = 0;
+  void use(Label query) {
+    query_ = query;
+    root_ = (query_ << 49) | (Label(kMaxCost) << 6);
+  }
+
   Label query_ = 0;
   Label root_ = 0;
+};
+
+/// One label a node, in the order of the nodes.
+class LabelTable : public QueryLabels {
+ public:
+  /// All labels empty. @return false if there is no memory for so many
+  bool resize(Index3 size, std::int64_t nodes);
+
+  /// Forgets all labels. Once in 32767 queries the table is renewed, at the price of resize().
+  /// @return false if that found no memory
+  bool start_query();
+
+  Label& at(std::uint32_t node, Index3) { return memory_.data()[node]; }
+  Label held(std::uint32_t node, Index3) const { return memory_.data()[node]; }
+  const Label* around(std::uint32_t node) const { return memory_.data() + node; }
+
+ private:
+  LabelMemory memory_;
+  std::int64_t nodes_ = 0;
 };
 
 }  // namespace goshawk::path_search

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "goshawk/core/bit_grid.hpp"
+#include "goshawk/path_search/lazy_words.hpp"
 #include "goshawk/path_search/move_rules.hpp"
 
 namespace goshawk::path_search {
@@ -13,14 +14,14 @@ namespace goshawk::path_search {
 /// The obstacles as the search reads them: one bit a voxel in three copies, one with each axis as
 /// the fastest, so that a scan along any axis looks at a word at a time. A blocked layer
 /// surrounds the map, so that no index needs a bounds test; neighbouring rows share it.
-/// Memory: 3 bits a voxel and the layer.
+/// Memory: 3 bits a voxel and the layer, and 6 more for the part of the map that jumps look at.
 ///
 /// The position of a voxel in the copy with x fastest is also its node number.
 class ObstacleBits {
  public:
   using Node = std::uint32_t;
   static constexpr std::int64_t kMaxNodes = std::int64_t{0xFFFFFFFF};
-  static constexpr int kWindow = 57;  // bits that one unaligned 64-bit load always holds
+  static constexpr int kLongestJump = 63;  // what one 64-bit window sees
 
   /// @return nodes that a map of this size needs, or 0 where it is more than kMaxNodes
   static std::int64_t nodes_for(Index3 size);
@@ -66,29 +67,39 @@ class ObstacleBits {
     return blocked;
   }
 
-  /// The straight jump: goes on from `from` by up to kWindow - 2 voxels.
+  /// The straight jump: goes on from `from` by up to kLongestJump voxels. Where it has to stop is
+  /// worked out for 64 voxels at a time, when first asked, and kept until the map changes there.
+  /// @param rule of all jumps (another one than before costs all that is kept)
   /// @param axis 0, 1, 2 @param sign -1 or +1
-  /// @return steps to the first voxel that may have a forced neighbour, or to the end of the
-  /// window; the negated number of free steps where an obstacle comes first
-  int straight_jump(CornerRule rule, int axis, int sign, Index3 from) const;
+  /// @return steps to the first voxel that may have a forced neighbour, or kLongestJump; the
+  /// negated number of free steps where an obstacle comes first
+  int straight_jump(CornerRule rule, int axis, int sign, Index3 from);
 
  private:
   // One copy: bit position = u + 1 + stride_u (v + 1) + stride_v (w + 1) for the axes u, v, w.
   struct Copy {
-    std::vector<std::uint64_t> words;  // a spare word at either end, for unaligned loads
+    std::vector<std::uint64_t> words;  // kSpare more at either end, for unaligned loads
     std::int64_t stride_u = 0;         // bits from one v to the next
     std::int64_t stride_v = 0;         // bits from one w to the next
-    const char* bytes() const { return reinterpret_cast<const char*>(words.data() + 1); }
+    LazyWords ahead;                   // where a jump towards higher u stops
+    LazyWords behind;                  // towards lower u
+    const char* bytes() const { return reinterpret_cast<const char*>(words.data() + kSpare); }
+    std::uint64_t from(std::int64_t p) const {
+      const std::uint64_t* w = words.data() + (p >> 6) + kSpare;
+      const int shift = int(p & 63);
+      return shift == 0 ? w[0] : w[0] >> shift | w[1] << (64 - shift);
+    }
   };
+  static constexpr int kSpare = 4;
 
   static std::int64_t position(const Copy& c, int u, int v, int w) {
     return u + 1 + c.stride_u * (v + 1) + c.stride_v * (w + 1);
   }
   static bool get(const Copy& c, std::int64_t p) {
-    return (c.words[std::size_t(p >> 6) + 1] >> (p & 63)) & 1U;
+    return (c.words[std::size_t(p >> 6) + kSpare] >> (p & 63)) & 1U;
   }
   static void flip(Copy& c, std::int64_t p) {
-    c.words[std::size_t(p >> 6) + 1] ^= std::uint64_t{1} << (p & 63);
+    c.words[std::size_t(p >> 6) + kSpare] ^= std::uint64_t{1} << (p & 63);
   }
   // floor(n / d) for n < 2^32 with magic = ceil(2^64 / d), d >= 2.
   static std::uint64_t divide(std::uint64_t n, std::uint64_t magic) {
@@ -100,10 +111,15 @@ class ObstacleBits {
   void clear(Copy& copy, int u_size, int v_size, int w_size);
   bool assign_row(const BitGrid& blocked, int y, int z);
   void apply_changes(std::uint64_t changes, int x0, int y, int z);
+  void forget_around(Copy& copy, std::int64_t p);
+  void forget_derived();
+  [[gnu::noinline]] void find_stops(Copy& copy, std::size_t word);
 
   Index3 size_;
   BitGrid held_;              // what the copies say
   std::array<Copy, 3> axes_;  // x, y, z fastest; then the other two in the order x, y, z
+  CornerRule rule_ = CornerRule::no_squeeze;  // of the stops
+  std::int64_t changes_ = 0;                  // of assign() at work
   std::array<std::int64_t, kDirections> offsets_{};
   std::uint64_t rows_per_layer_ = 0;
   std::uint64_t row_magic_ = 0;

@@ -24,7 +24,9 @@ struct Weights {
   bool near_obstacles() const { return clearance > 0.0 && reach_voxels > 0; }
 };
 
-/// The bracket above for every voxel, one byte a voxel and a table.
+/// The bracket above for every voxel, one byte a voxel and a table. Blocks of
+/// the map are measured when a search first asks for one of their voxels, and again after a change
+/// near them.
 class CostField {
  public:
   static constexpr int kMaxReach = 100;
@@ -32,17 +34,25 @@ class CostField {
   explicit CostField(const Weights& weights);
 
   /// Keeps copies of the grids, which share their chunks. Of a map of the same size as before only
-  /// the surroundings of chunks that differ are measured again.
+  /// chunks that differ are looked at.
   /// @param known of the same size: voxels that are not set in it are costly; null: none is
   void assign(const BitGrid& blocked, const BitGrid* known);
 
   /// @pre inside the grid
-  double factor(Index3 i) const { return table_[classes_[flat(i)]]; }
+  double factor(Index3 i) {
+    if (stale_[block_of(i)]) measure_block(i);
+    return table_[classes_[flat(i)]];
+  }
 
  private:
   std::size_t flat(Index3 i) const {
     return (std::size_t(i.z) * std::size_t(size_.y) + std::size_t(i.y)) * std::size_t(size_.x) +
            std::size_t(i.x);
+  }
+  std::size_t block_of(Index3 i) const {
+    return (std::size_t(i.z >> shift_) * std::size_t(blocks_.y) + std::size_t(i.y >> shift_)) *
+               std::size_t(blocks_.x) +
+           std::size_t(i.x >> 6);
   }
   /// lo <= i < hi
   struct Box {
@@ -50,13 +60,17 @@ class CostField {
   };
 
   Box widened(const Box& box) const;
-  Box changed_within(const BitGrid& blocked, BitGrid::Rows rows) const;
-  void measure(const BitGrid& blocked, const Box& box);
+  void mark_changes(const BitGrid& blocked, BitGrid::Rows rows);
+  [[gnu::noinline]] void measure_block(Index3 voxel);
+  void measure(const Box& box);
   void write(const BitGrid& level, Index3 corner, const Box& box, int steps);
   void mark_costly(const BitGrid& known, BitGrid::Rows rows);
 
   Weights weights_;
   Index3 size_;
+  int shift_ = 3;                      // a block is 64 voxels along x, 2^shift along y and z
+  Index3 blocks_;                      // how many
+  std::vector<std::uint8_t> stale_;    // by block: the distances in it are to be measured
   BitGrid blocked_, known_;            // what the classes say; known_ is empty if all is known
   std::array<double, 256> table_{};    // by class
   std::vector<std::uint8_t> classes_;  // steps to the nearest blocked voxel, | 128 where costly

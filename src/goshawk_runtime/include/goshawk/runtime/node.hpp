@@ -156,6 +156,12 @@ class Node {
   /// for work that should see the newest of them first. Call it from a callback.
   void later(std::function<void()> callback);
 
+  /// A node of the same name, namespace and remappings in the same process, to be spun by another
+  /// thread: for input that would keep this one waiting. It has the clock of the machine.
+  /// @pre not in lock step: what runs at the same time does not repeat
+  std::unique_ptr<Node> beside();
+  bool in_lock_step() const;
+
   /// Serves callbacks until stop(). An exception in a callback is a bug: it is logged with the
   /// topic's name, and ends the process, so that supervision restarts it.
   void spin();
@@ -170,6 +176,7 @@ class Node {
   void serve(std::unique_ptr<LiveParameters> parameters, ParameterSetters setters);
   void take_turn(const void* message);
   struct Impl;
+  explicit Node(const Node& other, std::unique_ptr<Impl> impl);
 
   std::string name_;
   RosArgs args_;

@@ -19,7 +19,7 @@ struct Pose {
 class PoseTrack {
  public:
   /// @param max_gap_s longer pauses between two poses are not bridged
-  explicit PoseTrack(double max_gap_s = 0.25, double keep_s = 2.0);
+  explicit PoseTrack(double max_gap_s = 0.5, double keep_s = 2.0);
 
   /// A stamp that is not above the newest one, as after a reset, starts the track anew.
   /// @return invalid_input for a pose that is not finite: it is not taken

@@ -16,9 +16,13 @@ namespace goshawk::stage {
 class MapSubscription {
  public:
   using Callback = std::function<void(const std::shared_ptr<const VoxelGrid>&)>;
+  using FaultCallback = std::function<void(const Error&)>;
 
+  /// Faults go to stage_report.
   /// @param on_map called with every new grid, in the node's thread
   MapSubscription(runtime::Node& node, StageReporter& reporter, Callback on_map = {});
+  /// @param on_fault called with what is wrong with a message, in the node's thread
+  MapSubscription(runtime::Node& node, Callback on_map, FaultCallback on_fault);
 
   /// @return the newest grid, or nullptr before the first
   const std::shared_ptr<const VoxelGrid>& grid() const { return grid_; }
@@ -28,8 +32,8 @@ class MapSubscription {
   void on_update(const goshawk_msgs::msg::VoxelGridUpdate& m);
   void take(VoxelGrid grid);
 
-  StageReporter& reporter_;
   Callback on_map_;
+  FaultCallback on_fault_;
   std::shared_ptr<const VoxelGrid> grid_;
 };
 

@@ -7,8 +7,21 @@
 #include "goshawk/core/landing.hpp"
 #include "goshawk/core/parameter.hpp"
 #include "goshawk/core/result.hpp"
+#include "goshawk/core/words.hpp"
 
 namespace goshawk::tracker {
+
+/// What the verdict of flight_check on a committed trajectory means to the tracker.
+enum class SecondOpinion {
+  off,      // nothing
+  heed,     // a trajectory that it finds touching is not flown, or braked for
+  require,  // also: only a trajectory that it found free is flown
+};
+
+constexpr auto words_of(SecondOpinion) {
+  using enum SecondOpinion;
+  return std::to_array<Named<SecondOpinion>>({{off, "off"}, {heed, "heed"}, {require, "require"}});
+}
 
 /// Defaults are tuned for the default vehicle of goshawk_simulator; README.md, Tuning.
 struct Config {
@@ -36,6 +49,10 @@ struct Config {
 
   double start_tolerance_m = 0.05;
   double start_velocity_tolerance_m_s = 0.2;
+  bool require_map = true;
+  double map_wait_s = 0.5;
+  SecondOpinion second_opinion = SecondOpinion::heed;
+  double second_opinion_wait_s = 0.5;
   double error_allowance_m = 0.05;
   double max_jump_m = 0.1;
   double odometry_timeout_s = 0.1;
@@ -103,6 +120,20 @@ void describe_safety(Self& c, Visitor& visit) {
         Range::positive(10.0));
   visit("start_velocity_tolerance_m_s", c.start_velocity_tolerance_m_s, "m/s",
         "the same for its velocity", Range::positive(10.0));
+  visit("require_map", c.require_map, "",
+        "only what the map shows free is flown; false: without any map, trajectories are flown "
+        "unchecked",
+        Anything{});
+  visit("map_wait_s", c.map_wait_s, "s",
+        "how long a trajectory waits for the map version that it names, before it is refused",
+        Range{0.0, 60.0});
+  visit("second_opinion", c.second_opinion, "",
+        "verdicts of flight_check: not heard (off), a trajectory that it finds touching is not "
+        "flown (heed), or only one that it found free is flown (require)",
+        Anything{});
+  visit("second_opinion_wait_s", c.second_opinion_wait_s, "s",
+        "require: how long a trajectory waits for its verdict, before it is refused",
+        Range{0.0, 60.0});
   visit("error_allowance_m", c.error_allowance_m, "m",
         "tracking error that the safety margin covers (margin_m of map_server); beyond it the "
         "vehicle is stopped where it is",

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "goshawk/core/committed_trajectory.hpp"
+#include "goshawk/core/free_curve.hpp"
 
 namespace goshawk::tracker {
 
@@ -21,8 +22,9 @@ class Reference {
   /// From now_ns on this curve instead of what was to come. @pre ends at rest
   void leave_by(const BezierPiece& curve, std::int64_t now_ns);
 
-  /// Come to rest on the path, from now_ns on, at about the given deceleration. Again while
-  /// braking, or on a held point: nothing new.
+  /// Come to rest on the path, from now_ns on, with the given deceleration at its peak (beside the
+  /// path's own), and without a jump of the acceleration. Again while braking, or on a held point:
+  /// nothing new.
   void brake(std::int64_t now_ns, double deceleration_m_s2);
 
   /// Before the trajectory's start: its start, moved back with the start's velocity. After its
@@ -34,6 +36,11 @@ class Reference {
   bool follows() const { return committed_ && !curve_ && !brake_; }
   /// At rest for good: a held point, or the end of the trajectory, the curve or the braking.
   bool at_rest(std::int64_t time_ns) const;
+
+  /// Is what is left of it free, until it comes to rest, or until to_ns? A held point is.
+  /// @return the first obstruction; its time counts from from_ns on
+  std::optional<Obstruction> find_obstruction(const VoxelGrid& grid, std::int64_t from_ns,
+                                              std::optional<std::int64_t> to_ns = {}) const;
 
   /// @pre has_trajectory()
   const CommittedTrajectory& committed() const { return *committed_; }
@@ -49,17 +56,19 @@ class Reference {
     double path_time_s;  // where on the path it begins
     double duration_s;   // how long it takes
   };
-  /// Time along the path, and its first two derivatives.
+  /// Time along the path, and its first three derivatives.
   struct PathTime {
     double s;
     double rate;
-    double rate_1_s;
+    double rate_1_s = 0.0;
+    double rate_1_s2 = 0.0;
   };
   bool rests_always() const { return !committed_ && !curve_; }
   std::int64_t path_start_ns() const { return curve_ ? curve_ns_ : start_ns_; }
   double path_duration_s() const { return curve_ ? curve_->duration_s : duration_s_; }
   FlatState on_path(double time_s) const;
   PathTime path_time(std::int64_t time_ns) const;
+  double seconds_until(double path_time_s, std::int64_t from_ns) const;
 
   Vec3 hold_map_ = Vec3::Zero();
   std::shared_ptr<const CommittedTrajectory> committed_;

@@ -21,16 +21,21 @@ struct LeftPath {
   double to_s = 0.0;
 };
 
-/// Is the whole curve in space that is known to be free?
-using IsFree = std::function<bool(const BezierPiece&)>;
+/// Where a curve enters space that is not known to be free: [s] after its start; nothing: nowhere.
+using FirstContact = std::function<std::optional<double>(const BezierPiece&)>;
+
+struct Stop {
+  BezierPiece curve;
+  std::optional<double> enters_s;  // as FirstContact; nothing: it is free
+};
 
 /// One quintic from the vehicle's state to rest. Of growing decelerations, and for each of a stop
-/// that returns to the path and of one straight ahead, the first that is free; else the hardest:
-/// back to the path when that is near, else straight ahead.
+/// that returns to the path and of one straight ahead, the first that is free; else the one that
+/// stays free for the longest time, of equal ones the hardest, back to the path if that is near.
 /// @param vehicle position, velocity and acceleration now (jerk is not used), all finite; what of
 ///        the acceleration makes it faster is left out
 /// @param path nothing: straight ahead
-BezierPiece plan_stop(const FlatState& vehicle, const std::optional<LeftPath>& path,
-                      const StopLimits& limits, const IsFree& is_free);
+Stop plan_stop(const FlatState& vehicle, const std::optional<LeftPath>& path,
+               const StopLimits& limits, const FirstContact& first_contact);
 
 }  // namespace goshawk::tracker

@@ -5,8 +5,10 @@
 #include <vector>
 
 #include "goshawk/core/landing.hpp"
+#include "goshawk/tracker/map_guard.hpp"
 #include "goshawk/tracker/position_controller.hpp"
 #include "goshawk/tracker/reference.hpp"
+#include "goshawk/tracker/stop.hpp"
 
 namespace goshawk::tracker {
 
@@ -23,7 +25,7 @@ struct TrackingStatus {
   Mode mode = Mode::idle;
   Error fault{ErrorCode::ok, ""};        // ok, or why the trajectory is not followed as planned
   std::uint64_t trajectory_id = 0;       // the one followed or come to rest on; 0: none yet
-  std::uint64_t lost_trajectory_id = 0;  // the one that will not be flown to its end
+  std::uint64_t lost_trajectory_id = 0;  // the newest that will not be flown to its end
   double progress_s = 0.0;               // along it
   double duration_s = 0.0;
   int queued = 0;            // trajectories accepted whose time has not come
@@ -40,11 +42,14 @@ struct TrackingStatus {
 ///
 /// What is lost is not flown on: a vehicle farther from its reference than the allowance, odometry
 /// that stops or jumps, a process that did not run. The reference then starts again from where the
-/// vehicle is, and comes to rest there (plan_stop); it never chases what went on without it. The
-/// position error that is corrected is bounded (max_position_error_m), so that no fault makes the
-/// vehicle faster than the trajectory, plus what that error is worth.
+/// vehicle is, and comes to rest there (plan_stop); it never chases what went on without it. What
+/// the map shows blocked is not flown either: each trajectory is checked before it is accepted, and
+/// what is left of it with every map; the vehicle brakes before what is in the way. The position
+/// error that is corrected is bounded (max_position_error_m), so that no fault makes the vehicle
+/// faster than the trajectory, plus what that error is worth.
 ///
 ///     auto tracker = Tracker::create(config);
+///     tracker->set_map(grid, now_ns);                                // whenever one comes
 ///     auto command = tracker->step(odometry, stamp_ns, now_ns);      // at odometry's rate
 ///     if (command) publish(*command); else report(command.error());  // silence is what makes
 ///                                                                    // the vehicle brake
@@ -61,7 +66,9 @@ class Tracker {
   /// replaced. With its start past it is followed at once, from where it should be by now.
   /// A refused trajectory changes nothing. Sentences name the trajectory and the reason.
   /// @return all of admit(); not_at_start: no odometry yet, or it does not pass the vehicle, nor
-  ///         the present reference, within the start tolerances; deadline_exceeded: it has ended
+  ///         the present reference, within the start tolerances; deadline_exceeded: it has ended;
+  ///         no_map: there is none, or not yet the version that it names; trajectory_blocked: the
+  ///         map has something in its way
   /// @param start_ns when it begins, on this clock
   Status accept(CommittedTrajectory committed, std::int64_t start_ns, std::int64_t now_ns);
   Status accept(CommittedTrajectory committed, std::int64_t now_ns) {
@@ -73,8 +80,8 @@ class Tracker {
   void brake(std::int64_t now_ns);
 
   /// @param stamp_ns [ns] when `state` was true @param now_ns [ns]
-  /// @return the command; or invalid_input (not finite, no unit quaternion, older than the last,
-  ///         from the future), tracking_lost (older than odometry_timeout_s). A stamp that falls
+  /// @return the command; or invalid_input (not finite, no unit quaternion, farther or faster
+  ///         than any vehicle, older than the last, from the future), tracking_lost (older than odometry_timeout_s). A stamp that falls
   ///         back by more than odometry_timeout_s is a simulation that began anew: everything is
   ///         forgotten, and the vehicle holds where it is.
   Result<AttitudeSetpoint> step(const RigidBodyState& state, std::int64_t stamp_ns,
@@ -83,12 +90,18 @@ class Tracker {
     return step(state, now_ns, now_ns);
   }
 
-  /// What a landing looks at; needs_map() tells when. Where a newer one shows the way down blocked,
-  /// a landing stops, and holds where it is.
+  /// The newest map: what is left of what is flown and of what waits is checked against it. What
+  /// is blocked is braked for (trajectory_blocked): along its path, else on another way that is
+  /// free, else on the one that stays free for the longest time. A landing whose way down it shows
+  /// blocked stops and holds where it is.
   /// @pre grid->check() ok
   void set_map(std::shared_ptr<const VoxelGrid> grid, std::int64_t now_ns);
-  /// The navigator is lost, the vehicle is at rest, and there is no map yet.
-  bool needs_map() const;
+  /// Version of the newest map, if one has come.
+  std::optional<std::uint64_t> map_version() const;
+
+  /// The second opinion finds a trajectory touching: it is dropped, or braked for as hard as may
+  /// be (collision). Others: nothing.
+  void veto(std::uint64_t id, const std::string& why, std::int64_t now_ns);
 
   /// What may change in flight: nothing that the force on the vehicle, what is admitted, or when
   /// it brakes depend on. A new yaw is turned to at the old rate.
@@ -133,7 +146,15 @@ class Tracker {
   void lose(const Error& why, std::int64_t since_ns);
   void stop_where_it_is(const Vec3& acceleration_map, std::int64_t last_stamp_ns,
                         std::int64_t now_ns);
+  Stop plan_stop_from(const FlatState& vehicle, std::int64_t last_stamp_ns,
+                      std::int64_t now_ns) const;
+  void check_landing(std::int64_t now_ns);
+  void check_flight(std::int64_t now_ns);
+  void drop_queued(std::size_t first, const Error& why, std::uint64_t newest);
+  void stop_before(const Obstruction& found, std::uint64_t newest, std::int64_t now_ns);
+  bool stop_on_free_way(std::int64_t now_ns);
   std::uint64_t followed_id() const;
+  std::uint64_t newest_id() const;
   double turn(std::int64_t now_ns);
   double wanted_yaw(std::int64_t now_ns) const;
 
@@ -163,6 +184,7 @@ class Tracker {
   std::optional<std::int64_t> heard_ns_;  // the navigator's last sign of life
   std::optional<std::int64_t> rest_since_ns_;  // the reference's, for good
   LandingGuard guard_;
+  MapGuard map_;
   bool landing_ = false;
   bool stays_ = false;  // the newest map, or none, does not allow it to land
   double error_m_ = 0.0;

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace goshawk::path_search {
+
+/// 64-bit words that are derived from others and made when they are first asked for. What nobody
+/// asks for takes address space alone, and a change costs one bit for each word that depends on it.
+class LazyWords {
+ public:
+  /// None is known.
+  void resize(std::size_t words) {
+    words_.reset(new std::uint64_t[words]);  // not written, so that no page is made
+    known_.assign(words / 64 + 1, 0);
+  }
+  void forget_all() { known_.assign(known_.size(), 0); }
+  void forget(std::size_t word) { known_[word >> 6] &= ~(std::uint64_t{1} << (word & 63)); }
+  bool is_known(std::size_t word) const { return (known_[word >> 6] >> (word & 63)) & 1U; }
+
+  void set(std::size_t word, std::uint64_t value) {
+    words_[word] = value;
+    known_[word >> 6] |= std::uint64_t{1} << (word & 63);
+  }
+  /// @pre is_known(word)
+  std::uint64_t operator[](std::size_t word) const { return words_[word]; }
+
+ private:
+  std::unique_ptr<std::uint64_t[]> words_;
+  std::vector<std::uint64_t> known_;  // one bit a word
+};
+
+}  // namespace goshawk::path_search

@@ -1,0 +1,419 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "goshawk/path_search/bucket_queue.hpp"
+#include "goshawk/path_search/components.hpp"
+#include "goshawk/path_search/labels.hpp"
+#include "goshawk/path_search/move_cost.hpp"
+#include "goshawk/path_search/move_rules.hpp"
+#include "goshawk/path_search/neighbour_labels.hpp"
+#include "goshawk/path_search/obstacle_bits.hpp"
+#include "goshawk/path_search/planner.hpp"
+#include "goshawk/path_search/successor_order.hpp"
+#include "goshawk/path_search/tiled_labels.hpp"
+#include "move_sets.hpp"
+
+/// The best-first search behind make_grid_search(), which alone includes this.
+namespace goshawk::path_search::best_first {
+
+using Node = ObstacleBits::Node;
+
+inline constexpr int kExpansionsBetweenLooks = 1024;  // at the clock and the stop token
+
+// The components of a new map are found beside the search: so many bricks at the first look, twice
+// as many at the second, three times at the third. That costs a short search little, and a
+// hopeless one ends soon in a map of any size.
+inline constexpr int kBricksAtFirstLook = 32;
+
+// Moves put off cost a push and a pop: not worth it for so few of them, at the first visit and
+// when they were put off before.
+inline constexpr int kFewAtFirst = 1;
+inline constexpr int kFewLater = 8;
+
+// Where paths are longer than the empty grid's by this much, most canonical moves that are put off
+// are made in the end.
+inline constexpr Cost kPutOffDetour = kUnit;
+
+// To look at the labels of all neighbours at once pays where most of them are known: not in a
+// search that ends soon.
+inline constexpr std::int64_t kExpansionsUnfiltered = 1024;
+
+/// Heuristic: a functor of move_cost.hpp. kJumps: canonical successors and straight jumps. Labels:
+/// LabelTable or TiledLabels.
+template <typename Heuristic, bool kJumps, typename Labels>
+class GridSearch final : public GridPlanner {
+ public:
+  GridSearch(std::string_view name, CornerRule rule)
+      : name_(name), rule_(rule), rules_(move_rules(rule)), components_(rule) {}
+
+  using GridPlanner::search;
+  std::string_view name() const override { return name_; }
+  using GridPlanner::set_map;
+  void set_map(const BitGrid& blocked, const BitGrid* known) override;
+  Status search(const GridQuery& query, VoxelPath& path) override;
+
+ private:
+  static constexpr bool kOctile = std::is_same_v<Heuristic, OctileHeuristic>;
+  // To look at the labels of all neighbours at once takes a plain table.
+  static constexpr bool kFilters = std::is_same_v<Labels, LabelTable>;
+
+  Status check(const GridQuery& query) const;
+  void prepare(const GridQuery& query);
+  Status run(const StopSignal& stop);
+  bool any_goal_is_joined() const;
+  bool look_for_a_way();
+  void expand(Node node, Index3 at, Label& label, Cost key);
+  [[gnu::noinline]] void expand_rest(Node node, Index3 at, Label label, BlockMask moves);
+  [[gnu::always_inline]] void make_moves(Node node, Index3 at, Label label, Cost key,
+                                         BlockMask moves, BlockMask block, int few);
+  BlockMask first_moves(Node node, Cost key, BlockMask moves, const SuccessorOrder::Case& order,
+                        int few);
+  void expand_all(Node node, Index3 at, Label label, BlockMask moves, BlockMask block);
+  void reach(Node node, Index3 at, Label label, Cost key);
+  int jump(const Move& move, int direction, Node node, Index3 from, Label label, BlockMask block);
+  int jump_ends(const Move& move, Index3 from, Index3 goal, int count) const;
+  Cost estimate(Index3 at) const;
+  bool is_goal(Node node) const;
+  void trace(VoxelPath& path) const;
+
+  std::string_view name_;
+  CornerRule rule_;
+  const MoveRules& rules_;
+  Error map_error_{ErrorCode::no_map, "no map yet: wait for one, or load one, before planning"};
+  bool has_map_ = false;
+  ObstacleBits bits_;
+  Components components_;
+  Labels labels_;
+  BucketQueue queue_;
+  SuccessorOrder order_;
+
+  // Of the query at work.
+  struct Goal {
+    Index3 cell;
+    Node node;
+    std::size_t index;  // in the query
+  };
+  Index3 start_;
+  std::vector<Goal> goals_;  // without repetition
+  Goal goal_{};              // the only one, or the one reached
+  Cost put_off_until_ = 0;   // from this key on, a node makes all moves at once
+  Cost bound_ = 0;           // only paths below it are of interest: the best so far
+  bool reached_ = false;
+  bool joined_ = false;  // start and goal, by components_
+  int looks_ = 0;
+  bool too_long_ = false;  // something was left out because its cost does not fit a label
+  Counters counters_;
+};
+
+inline Error too_large(Index3 size) {
+  return fail(ErrorCode::map_too_large,
+              "a map of " + to_text(size) +
+                  " voxels is too large to search (8 bytes a voxel, at "
+                  "most 2^32 voxels): use a coarser resolution or a smaller box");
+}
+
+template <typename Heuristic, bool kJumps, typename Labels>
+void GridSearch<Heuristic, kJumps, Labels>::set_map(const BitGrid& blocked, const BitGrid*) {
+  const bool same_size = has_map_ && bits_.size() == blocked.size();
+  if (!same_size) {
+    has_map_ = false;
+    if (blocked.empty()) {
+      map_error_ = fail(ErrorCode::no_map, "the map is empty: load one with at least one voxel");
+      return;
+    }
+    const std::int64_t nodes = ObstacleBits::nodes_for(blocked.size());
+    if (nodes == 0 || !labels_.resize(blocked.size(), nodes)) {
+      map_error_ = too_large(blocked.size());
+      return;
+    }
+  }
+  if (bits_.assign(blocked)) components_.forget();
+  has_map_ = true;
+}
+
+template <typename Heuristic, bool kJumps, typename Labels>
+Status GridSearch<Heuristic, kJumps, Labels>::check(const GridQuery& query) const {
+  if (!has_map_) return map_error_;
+  return check_ends(query, bits_.size(), [this](Index3 i) { return bits_.blocked(bits_.node(i)); });
+}
+
+template <typename Heuristic, bool kJumps, typename Labels>
+Status GridSearch<Heuristic, kJumps, Labels>::search(const GridQuery& query, VoxelPath& path) {
+  path.clear();
+  if (auto status = check(query); !status) return status;
+  if (!labels_.start_query()) return too_large(bits_.size());
+  prepare(query);
+  if (components_.ready() && !any_goal_is_joined()) return no_way(query);
+  Status ended = run(query.stop);
+  path.counters = counters_;
+  if (!ended) return ended;
+  if (reached_) {
+    path.goal = goal_.index;
+    trace(path);
+    return success();
+  }
+  if (too_long_) {
+    return fail(ErrorCode::solver_failed,
+                "every path is longer than four million voxels, which this search does not "
+                "follow: use a coarser resolution");
+  }
+  return no_way(query);
+}
+
+template <typename Heuristic, bool kJumps, typename Labels>
+void GridSearch<Heuristic, kJumps, Labels>::prepare(const GridQuery& query) {
+  start_ = query.start.cell;
+  goals_.clear();
+  for (std::size_t k = 0; k < query.goals.size(); ++k) {
+    const Index3 cell = query.goals[k].cell;
+    if (!is_goal(bits_.node(cell))) goals_.push_back({cell, bits_.node(cell), k});
+  }
+  goal_ = goals_.front();
+  // Keys never fall below the first one if the heuristic is consistent; the Euclidean one is so
+  // but for rounding, the Manhattan one is not.
+  queue_.clear(kOctile ? estimate(start_) : 0);
+  put_off_until_ = estimate(start_) + kPutOffDetour;
+  counters_ = {};
+  reached_ = too_long_ = false;
+  joined_ = components_.ready();
+  looks_ = 0;
+  bound_ = kMaxCost - kMoveCost[3] * (ObstacleBits::kLongestJump + 1);
+}
+
+// A*, with nodes expanded again when a better way to them appears (which only happens within the
+// width of a bucket, or under a heuristic that is not consistent), until nothing that is left
+// can beat the way found to the goal.
+template <typename Heuristic, bool kJumps, typename Labels>
+Status GridSearch<Heuristic, kJumps, Labels>::run(const StopSignal& stop) {
+  const Node start = bits_.node(start_);
+  reach(start, start_, Labels::extend(labels_.root(), 0, kNoDirection), estimate(start_));
+  int left = kExpansionsBetweenLooks;
+  while (queue_.advance()) {
+    const Cost lowest = queue_.lowest_key();
+    if (lowest >= bound_) break;
+    const BucketQueue::Entry entry = queue_.pop();
+    // A node whose label has improved since is expanded by its newer entry.
+    const Index3 at = bits_.index(entry.node);
+    Label& label = labels_.at(entry.node, at);
+    const bool expanded = (label & kExpanded) != 0;
+    if (lowest + entry.rest >= bound_ || expanded != (entry.note != 0)) continue;
+    if (--left == 0) {
+      if (auto status = stop.check(); !status) return status;
+      left = kExpansionsBetweenLooks;
+      if (!joined_ && !look_for_a_way()) break;
+    }
+    if (expanded) {
+      expand_rest(entry.node, at, label, entry.note);
+    } else {
+      expand(entry.node, at, label, lowest + entry.rest);
+    }
+  }
+  return success();
+}
+
+template <typename Heuristic, bool kJumps, typename Labels>
+bool GridSearch<Heuristic, kJumps, Labels>::any_goal_is_joined() const {
+  return std::any_of(goals_.begin(), goals_.end(),
+                     [this](const Goal& goal) { return components_.joined(start_, goal.cell); });
+}
+
+// A share of the work on the components. @return false once they say that there is no way
+template <typename Heuristic, bool kJumps, typename Labels>
+bool GridSearch<Heuristic, kJumps, Labels>::look_for_a_way() {
+  if (!components_.advance(bits_.map(), kBricksAtFirstLook * ++looks_)) return true;
+  joined_ = any_goal_is_joined();
+  return joined_;
+}
+
+// @param key g + estimate of the node
+template <typename Heuristic, bool kJumps, typename Labels>
+void GridSearch<Heuristic, kJumps, Labels>::expand(Node node, Index3 at, Label& label, Cost key) {
+  label |= kExpanded;
+  ++counters_.expanded;
+  const BlockMask block = bits_.block(node);
+  BlockMask moves = kJumps ? rules_.successors(Labels::direction(label), block)
+                           : MoveRules::allowed(rule_, block);
+  if constexpr (kFilters) {
+    if (counters_.expanded > kExpansionsUnfiltered) {
+      moves &= improved_neighbours(labels_, bits_, node);
+    }
+  }
+  if (moves == 0) return;
+  if (!kOctile || goals_.size() > 1) return expand_all(node, at, label, moves, block);
+  make_moves(node, at, label, key, moves, block, kFewAtFirst);
+}
+
+// @param moves that were put off when the node was expanded
+template <typename Heuristic, bool kJumps, typename Labels>
+void GridSearch<Heuristic, kJumps, Labels>::expand_rest(Node node, Index3 at, Label label,
+                                                        BlockMask moves) {
+  if constexpr (kFilters) moves &= improved_neighbours(labels_, bits_, node);
+  if (moves == 0) return;
+  const BlockMask block = kJumps ? bits_.block(node) : 0;
+  const Cost key = labels_.cost(label) + OctileHeuristic{}(at, goal_.cell);
+  make_moves(node, at, label, key, moves, block, kFewLater);
+}
+
+// With one goal and the octile estimate: the moves that raise the key least now, the others when
+// their turn comes, unless they are so few that coming back costs more.
+template <typename Heuristic, bool kJumps, typename Labels>
+inline void GridSearch<Heuristic, kJumps, Labels>::make_moves(Node node, Index3 at, Label label,
+                                                              Cost key, BlockMask moves,
+                                                              BlockMask block, int few) {
+  const SuccessorOrder::Case& order = order_.of(goal_.cell - at);
+  BlockMask now = moves;
+  if (!kJumps || key < put_off_until_) now = first_moves(node, key, moves, order, few);
+  while (now != 0) {
+    const int d = kJumps ? next_in_order(now) : std::countr_zero(now);
+    now &= ~(BlockMask{1} << d);
+    const Move& move = kMoves[std::size_t(d)];
+    const int count = kJumps ? jump(move, d, node, at, label, block) : 1;
+    if (count <= 0) continue;
+    const Node next = Node(node + count * bits_.offset(d));
+    const Label reached = Labels::extend(label, count * move.cost, d);
+    if (count == 1) {
+      reach(next, at + move.step, reached, key + order.rise[std::size_t(d)]);
+    } else {
+      const Index3 to{at.x + count * move.step.x, at.y + count * move.step.y,
+                      at.z + count * move.step.z};
+      reach(next, to, reached, labels_.cost(reached) + OctileHeuristic{}(to, goal_.cell));
+    }
+  }
+}
+
+// Puts off what raises the key more, if that is more than a few moves. @return the others
+template <typename Heuristic, bool kJumps, typename Labels>
+inline BlockMask GridSearch<Heuristic, kJumps, Labels>::first_moves(
+    Node node, Cost key, BlockMask moves, const SuccessorOrder::Case& order, int few) {
+  std::size_t level = 0;
+  BlockMask now = moves & order.moves[0];
+  while (now == 0 && level + 1 < SuccessorOrder::kLevels) now = moves & order.moves[++level];
+  const BlockMask later = moves & ~now;
+  if (at_most(level == 0 ? few : kFewLater, later)) return moves;
+  do ++level;
+  while ((later & order.moves[level]) == 0);
+  const Cost later_key = key + order.least[level];
+  if (later_key < bound_) {
+    queue_.push(node, later_key, later);
+  } else {
+    too_long_ |= !reached_;
+  }
+  return now;
+}
+
+template <typename Heuristic, bool kJumps, typename Labels>
+void GridSearch<Heuristic, kJumps, Labels>::expand_all(Node node, Index3 at, Label label,
+                                                       BlockMask moves, BlockMask block) {
+  for (; moves != 0; moves &= moves - 1) {
+    const int d = std::countr_zero(moves);
+    const Move& move = kMoves[std::size_t(d)];
+    const int count = kJumps ? jump(move, d, node, at, label, block) : 1;
+    if (count <= 0) continue;
+    const Index3 to{at.x + count * move.step.x, at.y + count * move.step.y,
+                    at.z + count * move.step.z};
+    const Label reached = Labels::extend(label, count * move.cost, d);
+    reach(Node(node + count * bits_.offset(d)), to, reached, labels_.cost(reached) + estimate(to));
+  }
+}
+
+template <typename Heuristic, bool kJumps, typename Labels>
+Cost GridSearch<Heuristic, kJumps, Labels>::estimate(Index3 at) const {
+  Cost least = Heuristic{}(at, goals_.front().cell);
+  for (std::size_t k = 1; k < goals_.size(); ++k) {
+    least = std::min(least, Heuristic{}(at, goals_[k].cell));
+  }
+  return least;
+}
+
+template <typename Heuristic, bool kJumps, typename Labels>
+bool GridSearch<Heuristic, kJumps, Labels>::is_goal(Node node) const {
+  for (const Goal& goal : goals_) {
+    if (goal.node == node) return true;
+  }
+  return false;
+}
+
+// How many moves of this kind make one edge of the search; 0 or less for a dead end, or if the
+// first voxel has a label as good: it makes its own moves, so what lies behind is reached as
+// cheaply.
+template <typename Heuristic, bool kJumps, typename Labels>
+int GridSearch<Heuristic, kJumps, Labels>::jump(const Move& move, int direction, Node node,
+                                                Index3 from, Label label, BlockMask block) {
+  if (move.axis < 0) return 1;
+  // Where the ring around the next voxel differs from the one here, a jump would mostly end there.
+  if (MoveRules::ring_changes(move, block)) return 1;
+  const Label first = labels_.held(Node(node + bits_.offset(direction)), from + move.step);
+  if (!Labels::improves(Labels::extend(label, move.cost, direction), first)) return 0;
+  int count = bits_.straight_jump(rule_, move.axis, move.sign, from);
+  for (const Goal& goal : goals_) count = jump_ends(move, from, goal.cell, count);
+  return count;
+}
+
+// The goal ends a jump, too.
+template <typename Heuristic, bool kJumps, typename Labels>
+int GridSearch<Heuristic, kJumps, Labels>::jump_ends(const Move& move, Index3 from, Index3 goal,
+                                                     int count) const {
+  const Index3 left = goal - from;
+  const int along = move.sign * (move.axis == 0 ? left.x : move.axis == 1 ? left.y : left.z);
+  const bool in_line = std::abs(left.x) + std::abs(left.y) + std::abs(left.z) == along;
+  return in_line && along > 0 && along <= std::abs(count) ? along : count;
+}
+
+template <typename Heuristic, bool kJumps, typename Labels>
+void GridSearch<Heuristic, kJumps, Labels>::reach(Node node, Index3 at, Label label, Cost key) {
+  if (key >= bound_) {
+    too_long_ |= !reached_;
+    return;
+  }
+  Label& held = labels_.at(node, at);
+  if (!Labels::improves(label, held)) return;
+  held = label;
+  ++counters_.generated;
+  for (const Goal& goal : goals_) {
+    if (node != goal.node) continue;
+    goal_ = goal;
+    bound_ = labels_.cost(label);
+    reached_ = true;
+    return;
+  }
+  queue_.push(node, key, 0);
+}
+
+// Back from the goal against the directions of arrival. Voxels inside a jump have no label that
+// fits; the first one behind whose label accounts for the cost is where the jump began.
+template <typename Heuristic, bool kJumps, typename Labels>
+void GridSearch<Heuristic, kJumps, Labels>::trace(VoxelPath& path) const {
+  Node node = goal_.node;
+  Index3 at = goal_.cell;
+  Label label = labels_.held(node, at);
+  Cost cost = labels_.cost(label);
+  std::array<std::int64_t, 4> moves{};
+  path.cells.push_back(at);
+  while (!(at == start_)) {
+    const int d = Labels::direction(label);
+    const auto axes = std::size_t(axes_changed(d));
+    at = at - step_of(d);
+    node = Node(node - bits_.offset(d));
+    cost -= kMoveCost[axes];
+    ++moves[axes];
+    path.cells.push_back(at);
+    const Label held = labels_.held(node, at);
+    if (labels_.is_current(held) && labels_.cost(held) <= cost) {
+      label = held;
+      cost = labels_.cost(held);
+    }
+  }
+  std::reverse(path.cells.begin(), path.cells.end());
+  path.cost_voxels =
+      double(moves[1]) + double(moves[2]) * std::sqrt(2.0) + double(moves[3]) * std::sqrt(3.0);
+}
+
+}  // namespace goshawk::path_search::best_first
