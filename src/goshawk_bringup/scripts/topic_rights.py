@@ -10,7 +10,8 @@ ALL = ["/*"]
 
 # name: what it reads and writes besides EVERY_NODE (stages also write stage_report)
 STAGES = {
-    "map_server": {"reads": ["cloud_in", "odom"], "writes": [*MAP, "octomap_binary"]},
+    "map_server": {"reads": ["cloud_in", "odom", "/tf", "/tf_static"],
+                   "writes": [*MAP, "octomap_binary"]},
     "path_search": {"reads": [*MAP, "plan_request"], "writes": ["path"]},
     "corridor_builder": {"reads": [*MAP, "plan_request", "path"], "writes": ["corridor"]},
     "trajectory_optimizer": {"reads": ["plan_request", "corridor"], "writes": ["trajectory"]},

@@ -14,7 +14,7 @@ import topic_rights  # noqa: E402
 
 PLACES = [(3.0, 8.0, 2.0), (3.0, 0.0, 1.0)]
 PROFILE = "FASTRTPS_DEFAULT_PROFILES_FILE"
-NODES = {**{name: name for name in topic_rights.STAGES if name not in ("vehicle", "visualizer")},
+NODES = {**{name: name for name in topic_rights.STAGES if name not in ("vehicle", "visualizer", "sensors")},
          "simulator": "vehicle"}
 # Opened only if they are needed: the map before a landing, the truth beside a sensor's error.
 LATER = {"tracker": set(topic_rights.MAP), "vehicle": {*topic_rights.MAP, "odom_true"}}
