@@ -70,7 +70,13 @@ class SecondWriters(StackTest):
     def test_2_a_flight_beside_them_reaches_its_goals(self):
         self.fly()
 
-    def test_3_a_stage_that_is_started_again_is_heard_at_once(self):
+    def arrives(self, place):
+        state = self.stack.fly_to(place)
+        return state is not None and state["state"] == "arrived"
+
+    def test_3_a_stage_that_is_started_again_is_heard(self):
+        """A goal may come before all have found it, so it is sent again; a stage that is not heard
+        never flies."""
         for stage in ("tracker", "navigator", "map_server"):
             with self.subTest(stage):
                 before = self.stack.launch.pids()[stage]
@@ -81,6 +87,8 @@ class SecondWriters(StackTest):
                 log = self.stack.launch.logs / f"{stage}.log"
                 ready = until(lambda f=log: f.read_text(errors="replace").count("ready: ") > 1, 30.0)
                 self.assertTrue(ready, self.stack.launch.tails())
+                self.assertTrue(until(lambda: self.arrives(PLACES[0]), 30.0),
+                                self.stack.launch.tails())
                 self.fly()
                 heard = [r["message"] for r in self.stack.reports.lines()
                          if r["code"] == "second_writer" and f"what /{stage} (process {again}"
