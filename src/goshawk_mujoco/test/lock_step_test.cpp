@@ -110,7 +110,8 @@ Flown fly(const std::string& plant, const std::vector<std::string>& parameters) 
   for (const auto& p : parameters) plant_call.insert(plant_call.end(), {"-p", p});
   const auto context = runtime::Context::create(options).value();
   Pilot pilot(*context);
-  const Stage navigator({"navigator", "--ros-args", "-p", "lock_step:=true"});
+  const Stage navigator(
+      {"navigator", "--ros-args", "-p", "lock_step:=true", "-p", "require_map:=false"});
   const Stage tracker(
       {"tracker", "--ros-args", "-p", "lock_step:=true", "-p", "require_map:=false"});
   const Stage simulator(plant_call);
