@@ -33,17 +33,17 @@ class ForeignSearch {
         publisher_(node.advertise<msg::Path>("path", Qos::reliable_last())),
         map_(node, reporter_, [this](const auto& grid) { search_.set_map(grid); }) {
     node.subscribe<msg::PlanRequest>("plan_request", Qos::reliable_last(),
-                                     [this](const msg::PlanRequest& m, const auto&) { on(m); });
+                                     [this](const auto& m, const auto& info) { on(m, info); });
     reporter_.ready("here");
   }
 
  private:
-  void on(const msg::PlanRequest& m) {
+  void on(const msg::PlanRequest& m, const MessageInfo& info) {
     ++requests_;
     if (fault_ == Fault::silent && requests_ % 5 == 0) return;
     if (fault_ == Fault::believes_all) return answer(m, {Vec3(0, 0, 0), Vec3(1, 0, 0)});
-    const std::int64_t now_ns = node_.monotonic_ns();
-    const auto request = open_request(m, now_ns, now_ns, reporter_, {});
+    const std::int64_t arrived_ns = node_.monotonic_ns() - info.waited_ns;
+    const auto request = open_request(m, arrived_ns, node_.monotonic_ns(), reporter_, {});
     if (!request) return;
     const Vec3& start = request->start.position;
     const Vec3& goal = request->goal.position;

@@ -110,10 +110,15 @@ Flown fly(const std::string& plant, const std::vector<std::string>& parameters) 
   for (const auto& p : parameters) plant_call.insert(plant_call.end(), {"-p", p});
   const auto context = runtime::Context::create(options).value();
   Pilot pilot(*context);
-  const Stage navigator(
-      {"navigator", "--ros-args", "-p", "lock_step:=true", "-p", "require_map:=false"});
-  const Stage tracker(
-      {"tracker", "--ros-args", "-p", "lock_step:=true", "-p", "require_map:=false"});
+  // The pilot plans without a map.
+  const std::vector<std::string> without_map{"--ros-args", "-p", "lock_step:=true", "-p",
+                                             "require_map:=false"};
+  const auto call = [&](std::vector<std::string> stage) {
+    stage.insert(stage.end(), without_map.begin(), without_map.end());
+    return stage;
+  };
+  const Stage navigator(call({"navigator"}));
+  const Stage tracker(call({"tracker"}));
   const Stage simulator(plant_call);
   const auto begin = std::chrono::steady_clock::now();
   EXPECT_TRUE(pilot.fly(120.0));
