@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fstream>
 #include <map>
+#include <memory>
 #include <set>
 #include <sstream>
 
@@ -53,12 +54,14 @@ std::vector<Finding> check_odometry(Session& session, double timeout_s) {
   const auto has = [&](const auto& wanted) { return std::ranges::any_of(endpoints, wanted); };
   // Simulated time says nothing about a machine's clock.
   if (has([](const auto& e) { return e.writer && e.topic == "/clock"; })) return {};
-  std::map<std::string, std::vector<double>> ages_s;
+  // The subscriptions outlive this function.
+  const auto shared = std::make_shared<std::map<std::string, std::vector<double>>>();
+  auto& ages_s = *shared;
   for (const auto& e : endpoints) {
     if (!e.writer || e.type != "nav_msgs/msg/Odometry" || ages_s.contains(e.topic)) continue;
     session.node().subscribe<nav_msgs::msg::Odometry>(
         e.topic, runtime::Qos::best_effort(),
-        [&ages = ages_s[e.topic]](const auto& m, const runtime::MessageInfo& info) {
+        [shared, &ages = ages_s[e.topic]](const auto& m, const runtime::MessageInfo& info) {
           ages.push_back(1e-9 * double(info.received_ns - conversions::to_ns(m.header().stamp())));
         });
   }
@@ -87,16 +90,17 @@ std::vector<Finding> check_refusals(Session& session, double timeout_s) {
   for (const auto& e : session.context().endpoints()) {
     if (e.writer && e.type == "goshawk_msgs/msg/StageReport") topics.insert(e.topic);
   }
-  std::map<std::string, msg::StageReport> newest;  // by node
+  const auto shared = std::make_shared<std::map<std::string, msg::StageReport>>();  // by node
   for (const auto& topic : topics) {
-    session.node().subscribe<msg::StageReport>(
-        topic, runtime::Qos::latched(20), [&newest](const msg::StageReport& m, const auto&) {
-          if (refused_datagrams(m) > 0) newest[m.node()] = m;
-        });
+    session.node().subscribe<msg::StageReport>(topic, runtime::Qos::latched(20),
+                                               [shared](const msg::StageReport& m, const auto&) {
+                                                 if (refused_datagrams(m) > 0)
+                                                   (*shared)[m.node()] = m;
+                                               });
   }
   if (!topics.empty()) session.wait_for(std::min(timeout_s, kReports_s), [] { return false; });
   std::vector<Finding> findings;
-  for (const auto& [node, report] : newest) {
+  for (const auto& [node, report] : *shared) {
     findings.push_back(check_refused(node, refused_datagrams(report), report.message()));
   }
   return findings;

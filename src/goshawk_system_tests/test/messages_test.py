@@ -92,7 +92,7 @@ class BadGoals(BadMessageCase):
 class BadMessages(BadMessageCase):
     ros_args = fed("path_search:plan_request", "corridor_builder:path",
                    "trajectory_optimizer:corridor", "navigator:trajectory",
-                   "tracker:committed_trajectory")
+                   "tracker:committed_trajectory", "tracker:navigator_alive")
 
     def test_2_requests(self):
         kind = "goshawk_msgs/msg/PlanRequest"
