@@ -39,7 +39,8 @@ ParameterRequest to_msg(const ParameterQuestion& question, std::int64_t now_ns) 
 Result<std::vector<LiveParameter>> from_msg(const ParameterAnswer& answer) {
   if (answer.code() != to_string(ErrorCode::ok)) {
     // A request that is not valid is a wrong call, whichever of the two codes the node gives it.
-    return fail(ErrorCode::invalid_parameter, answer.message());
+    const bool refused = answer.code() == to_string(ErrorCode::not_permitted);
+    return fail(refused ? ErrorCode::not_permitted : ErrorCode::invalid_parameter, answer.message());
   }
   std::vector<LiveParameter> list;
   for (const Parameter& p : answer.parameters()) {

@@ -59,6 +59,13 @@ class Reader {
     at_ += size;
     return m;
   }
+  std::string text() {
+    const auto size = number<std::uint64_t>();
+    if (!has(size)) return {};
+    std::string text(at_, at_ + size);
+    at_ += size;
+    return text;
+  }
   bool good() const { return good_; }
   bool at_end() const { return good_ && at_ == end_; }
 
@@ -89,6 +96,9 @@ Bytes to_bytes(const StoredMemory& stored) {
                              memory.goal.position_map.z(), memory.goal.yaw_rad}) {
     put(bytes, value);
   }
+  put(bytes, std::uint64_t(memory.reason.code));
+  put(bytes, std::uint64_t(memory.reason.message.size()));
+  bytes.insert(bytes.end(), memory.reason.message.begin(), memory.reason.message.end());
   put(bytes, std::uint64_t(stored.legs.size()));
   for (const PublishedLeg& leg : stored.legs) {
     const Bytes encoded = runtime::encode(leg);
@@ -117,6 +127,9 @@ Result<StoredMemory> from_bytes(const Bytes& bytes) {
   stored.memory.newest_id = reader.number<std::uint64_t>();
   for (double& value : stored.memory.goal.position_map) value = reader.number<double>();
   stored.memory.goal.yaw_rad = reader.number<double>();
+  const auto code = reader.number<std::uint64_t>();
+  if (code >= all_error_codes().size()) return broken();
+  stored.memory.reason = {all_error_codes()[code], reader.text()};
   const auto legs = reader.number<std::uint64_t>();
   for (std::uint64_t i = 0; i < std::min<std::uint64_t>(legs, kMostLegs) && reader.good(); ++i) {
     stored.legs.push_back(reader.message<PublishedLeg>());

@@ -149,7 +149,8 @@ class NavigatorComponent : public Component {
     node_.subscribe<msg::TrackingState>(
         "tracking_state", Qos::best_effort(),
         [this](const msg::TrackingState& m, const MessageInfo&) {
-          navigator_.on_tracking(m.request_id(), node_.monotonic_ns());
+          const bool follows = m.mode() == msg::TrackingState_Constants::MODE_FOLLOW;
+          navigator_.on_tracking(m.request_id(), follows, node_.monotonic_ns());
           carry_out();
         },
         Writers::one("tracking_state"));

@@ -104,6 +104,7 @@ void Navigator::check_pending(std::int64_t now_ns) {
 
 void Navigator::commit(CommittedTrajectory committed, std::uint64_t number, std::int64_t now_ns) {
   orders_.push_back(Commit{committed, number});
+  left_.reset();
   schedule_.add({.committed = std::move(committed)});
   drop_open();
   dropped_id_ = 0;
@@ -139,6 +140,7 @@ void Navigator::on_tracker_report(std::uint64_t id, const Error& outcome, std::i
     return;
   }
   if (now_ns - leg->start_ns() > to_ns(kFlown_s)) pursuit_.failures = 0;
+  left_ = Left{*leg, now_ns, !pursuit_.open};
   if (leg->accepted) {
     lost_id_ = id;
     schedule_.clear();
@@ -146,6 +148,19 @@ void Navigator::on_tracker_report(std::uint64_t id, const Error& outcome, std::i
     schedule_.drop_from(id);
   }
   pursue_again({outcome.code, "tracker: " + outcome.message}, now_ns);
+}
+
+// A tracker that was started again may refuse a trajectory and then take it: it comes twice.
+void Navigator::take_up_again(std::uint64_t followed_id, std::int64_t now_ns) {
+  if (!left_ || left_->leg.id() != followed_id) return;
+  if (now_ns - left_->since_ns < to_ns(kDoubt_s)) return;  // said before it left it
+  const Left left = *std::exchange(left_, {});
+  lost_id_ = 0;
+  schedule_.add(left.leg);
+  if (!left.answers) return;
+  drop_open();
+  pursuit_.open = false;
+  enter(State::flying, now_ns);
 }
 
 // What was committed for the newest goal will not lead there.

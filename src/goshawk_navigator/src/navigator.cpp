@@ -49,8 +49,7 @@ void Navigator::resume(Memory memory, std::int64_t now_ns) {
   }
   next_id_ = std::max(next_id_, newest_id_ + 1);
   if (memory.open && schedule_.moves(now_ns)) pursuit_.revoked_ns = now_ns;
-  enter(memory.state, now_ns,
-        {ErrorCode::ok, "going on where the navigator before this one ended"});
+  enter(memory.state, now_ns, std::move(memory.reason));
 }
 
 Memory Navigator::memory() const {
@@ -58,6 +57,7 @@ Memory Navigator::memory() const {
           .newest_id = newest_id_,
           .goal = pursuit_.goal,
           .open = pursuit_.open,
+          .reason = said_reason_,
           .legs = schedule_.legs()};
 }
 
@@ -74,6 +74,7 @@ Status Navigator::on_goal(const Vec3& goal_map, double yaw_rad, std::int64_t now
               .lead_s = config_.replan_lead_s,
               .wait_begin_ns = now_ns};
   if (moves) pursuit_.revoked_ns = revoked_ns.value_or(now_ns);
+  if (left_) left_->answers = false;
   drop_open();
   enter(moves ? State::flying : State::planning, now_ns);
   plan(now_ns);
@@ -85,8 +86,9 @@ void Navigator::on_odometry(const RigidBodyState& vehicle, std::int64_t now_ns) 
   odometry_ns_ = now_ns;
 }
 
-void Navigator::on_tracking(std::uint64_t id, std::int64_t now_ns) {
+void Navigator::on_tracking(std::uint64_t id, bool follows, std::int64_t now_ns) {
   tracked_ = Tracked{id, now_ns};
+  if (follows) take_up_again(id, now_ns);
   say_what_is_flown(now_ns);
 }
 

@@ -15,7 +15,8 @@ StoredMemory in_flight() {
   StoredMemory stored{.memory = {.state = State::flying,
                                  .newest_id = 1'790'000'000'123,
                                  .goal = {Vec3(3.5, 6.1, 1.1), -0.75},
-                                 .open = true},
+                                 .open = true,
+                                 .reason = {ErrorCode::not_at_start, "0.9 m away"}},
                       .legs = std::vector<PublishedLeg>(2)};
   stored.legs[0].yaw(0.5);
   stored.legs[1].map_version(9);
@@ -43,6 +44,8 @@ TEST_F(MemoryFile, GivesBackWhatWasWrittenLast) {
   EXPECT_EQ(read->memory.goal.position_map, Vec3(3.5, 6.1, 1.1));
   EXPECT_EQ(read->memory.goal.yaw_rad, -0.75);
   EXPECT_TRUE(read->memory.open);
+  EXPECT_EQ(read->memory.reason.code, ErrorCode::not_at_start);
+  EXPECT_EQ(read->memory.reason.message, "0.9 m away");
   EXPECT_EQ(read->legs, in_flight().legs);
   EXPECT_FALSE(std::filesystem::exists(path_ + ".new"));
 }

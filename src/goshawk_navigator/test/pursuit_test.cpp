@@ -160,13 +160,32 @@ TEST(Pursuit, WhatTheTrackerFollowsIsBelievedMoreThanWhatWasCommitted) {
   h.answer();
   h.pass(0.2);
   EXPECT_EQ(h.last().flown_id, h.plans[0].id);
-  h.navigator.on_tracking(0, h.now);  // a tracker that has just been started
+  h.navigator.on_tracking(0, false, h.now);  // a tracker that has just been started
   h.take();
   EXPECT_EQ(h.last().flown_id, 0u);
-  h.navigator.on_tracking(h.plans[0].id, h.now);
+  h.navigator.on_tracking(h.plans[0].id, true, h.now);
   h.take();
   EXPECT_EQ(h.last().flown_id, h.plans[0].id);
   EXPECT_EQ(h.last().state, State::flying);
+}
+
+TEST(Pursuit, ATrajectoryThatTheTrackerRefusesAndThenFollowsIsFlown) {
+  Harness h;
+  h.goal(kGoal);
+  h.answer();
+  const std::uint64_t id = h.commits[0].id();
+  h.pass(1.0);
+  h.tracker_says(id, {ErrorCode::not_at_start, "no odometry yet"});
+  h.navigator.on_tracking(id, true, h.now);  // said before
+  h.take();
+  EXPECT_NE(h.last().reason.code, ErrorCode::ok);
+  h.pass(0.2);
+  h.navigator.on_tracking(id, true, h.now);
+  h.take();
+  EXPECT_EQ(h.last().state, State::flying);
+  EXPECT_EQ(h.last().flown_id, id);
+  h.pass(4.0);
+  EXPECT_EQ(h.last().state, State::arrived);
 }
 
 }  // namespace

@@ -121,7 +121,8 @@ void FlightLab::step() {
       }
     }
     report_tracker();
-    navigator_.on_tracking(tracker_.status().trajectory_id, now);
+    const auto tracking = tracker_.status();
+    navigator_.on_tracking(tracking.trajectory_id, tracking.mode == tracker::Mode::follow, now);
     take_orders();
     max_error_m_ = std::max(max_error_m_, tracker_.status().error_m);
   }

@@ -53,6 +53,7 @@ struct Memory {
   std::uint64_t newest_id = 0;
   Goal goal;
   bool open = false;      // no committed trajectory leads to the goal yet
+  Error reason = {ErrorCode::ok, ""};
   std::vector<Leg> legs = {};  // by start
 };
 
@@ -96,7 +97,8 @@ class Navigator {
   void on_report(std::uint64_t id, StageRole stage, const Error& outcome, std::int64_t now_ns,
                  double goal_moved_m = 0.0);
   /// What the tracker says that it follows or holds the end of; 0: nothing.
-  void on_tracking(std::uint64_t id, std::int64_t now_ns);
+  /// @param follows it is on it, as planned
+  void on_tracking(std::uint64_t id, bool follows, std::int64_t now_ns);
   /// Regularly, some 50 times a second: timeouts and arrival.
   void tick(std::int64_t now_ns);
 
@@ -145,6 +147,11 @@ class Navigator {
     std::uint64_t id;
     std::int64_t ns;
   };
+  struct Left {  // what the tracker said that it does not fly
+    Leg leg;
+    std::int64_t since_ns;
+    bool answers;  // it leads to the newest goal
+  };
   struct Start {  // what a plan begins with
     FlatState state;
     double yaw_rad = 0.0;
@@ -177,6 +184,7 @@ class Navigator {
   void check_legs(std::int64_t now_ns);
   void blocked(const Error& why, std::int64_t now_ns);
   void pursue_again(const Error& why, std::int64_t now_ns);
+  void take_up_again(std::uint64_t followed_id, std::int64_t now_ns);
   // navigator.cpp
   void check_arrival(std::int64_t now_ns);
   bool at_rest() const;
@@ -197,6 +205,7 @@ class Navigator {
   std::shared_ptr<const VoxelGrid> map_;
   std::optional<std::int64_t> map_changed_ns_;
   std::optional<Tracked> tracked_;
+  std::optional<Left> left_;
   std::uint64_t lost_id_ = 0;  // the tracker has left it
   std::uint64_t said_flown_id_ = 0;
   Error said_reason_{ErrorCode::ok, ""};
