@@ -94,7 +94,7 @@ void Navigator::ask(const Start& start, std::int64_t now_ns) {
   request.start_yaw_rate_rad_s = start.yaw_rate_rad_s;
   request.goal.position = pursuit_.goal.position_map;
   request.goal_yaw_rad = pursuit_.goal.yaw_rad;
-  request.limits = config_.limits();
+  request.limits = start.time_ns ? config_.limits_in_flight() : config_.limits();
   request.deadline_s = config_.plan_timeout_s;
   request.supersedes = std::exchange(dropped_id_, 0);
   request.unknown = config_.unknown;

@@ -132,6 +132,28 @@ TEST(Navigator, AsksForTheLimitsAndTheUnknownSpaceOfItsConfig) {
   EXPECT_TRUE(check(h.plans[0]).ok());
 }
 
+TEST(Navigator, AsksForALimitOfTheJerkInFlight) {
+  const auto asked = [](double j_max, double j_max_in_flight) {
+    Config config;
+    config.j_max_m_s3 = j_max;
+    config.j_max_in_flight_m_s3 = j_max_in_flight;
+    Harness h;
+    EXPECT_TRUE(h.navigator.reconfigure(wide(config)));
+    h.goal(kGoal);
+    EXPECT_EQ(h.plans.back().limits.j_max_m_s3, j_max);  // from rest
+    h.answer();
+    h.pass(0.5);
+    h.goal(kHome);
+    EXPECT_TRUE(h.plans.back().start_time_ns.has_value());
+    return h.plans.back().limits.j_max_m_s3;
+  };
+  EXPECT_EQ(asked(0.0, 30.0), 30.0);
+  EXPECT_EQ(asked(20.0, 30.0), 20.0);
+  EXPECT_EQ(asked(40.0, 30.0), 30.0);
+  EXPECT_EQ(asked(40.0, 0.0), 40.0);
+  EXPECT_EQ(asked(0.0, 0.0), 0.0);
+}
+
 TEST(Navigator, CommitsWithTheGoalsHeadingAndTheMapOfTheProof) {
   Harness h;
   ASSERT_TRUE(h.navigator.on_goal(kGoal, 0.5, h.now).ok());

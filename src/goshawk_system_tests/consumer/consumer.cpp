@@ -77,18 +77,21 @@ int main() {
   start.position = Vec3(1, 1, 1);
   goal.position = Vec3(1, 7, 2);
   navigator::Navigator navigator({}, 1);
+  navigator.on_map(map, 1);
   navigator.on_odometry({.position_map = start.position}, 1);
   need(navigator.on_goal(goal.position, 0.0, 1), "goal");
   for (const auto& order : navigator.take_orders()) {
     if (const auto* request = std::get_if<PlanRequest>(&order)) {
       const auto certified = plan(map, request->start, request->goal, request->limits);
-      navigator.on_trajectory({.id = request->id, .nominal = certified}, 1);
+      navigator.on_trajectory(
+          {.id = request->id, .nominal = certified, .map_version = map->version}, 1, 1);
     }
   }
   for (const auto& order : navigator.take_orders()) {
-    if (const auto* committed = std::get_if<CommittedTrajectory>(&order)) {
+    if (const auto* commit = std::get_if<navigator::Commit>(&order)) {
+      const CommittedTrajectory& committed = commit->trajectory;
       std::printf("certified to %.1e m, flown to %.4f m\n",
-                  committed->nominal().certificate().goal_m, fly(map, *committed, start));
+                  committed.nominal().certificate().goal_m, fly(map, committed, start));
       return 0;
     }
   }

@@ -14,6 +14,8 @@ int count_of(const char* variable, int otherwise) {
   return text != nullptr ? std::atoi(text) : otherwise;
 }
 
+constexpr double kAllowed_m = 0.05;  // margin_m of the map server
+
 struct Tally {
   int sent = 0;
   int dropped = 0;
@@ -47,16 +49,48 @@ TEST(GoalsInFlight, NoneIsDropped) {
   Tally tally;
   const double begin_s = lab.now_s();
   while (tally.sent < goals) ASSERT_NO_FATAL_FAILURE(interrupt(lab, random, tally));
-  std::printf("%d goals in flight: %d dropped, %d stuck; %d plans, %d commits, %zu refused, "
-              "%zu lost, largest error %.3f m, fastest %.3f m/s, %d ms of contact, %.0f s flown\n",
-              tally.sent, tally.dropped, tally.stuck, lab.plans(), lab.commits(),
-              lab.refusals.size(), lab.losses.size(), lab.max_error_m(), lab.max_speed_m_s(), lab.contacts(),
-              lab.now_s() - begin_s);
+  std::printf(
+      "%d goals in flight: %d dropped, %d stuck; %d plans, %d commits, %zu refused, "
+      "%zu lost, largest error %.3f m, fastest %.3f m/s, %d ms of contact, %.0f s flown\n",
+      tally.sent, tally.dropped, tally.stuck, lab.plans(), lab.commits(), lab.refusals.size(),
+      lab.losses.size(), lab.max_error_m(), lab.max_speed_m_s(), lab.contacts(),
+      lab.now_s() - begin_s);
   for (const auto& loss : lab.losses) std::printf("  lost: %s\n", loss.message.c_str());
   for (const auto& [code, count] : tally.reasons) std::printf("  %s: %d\n", code.c_str(), count);
   EXPECT_EQ(tally.dropped, 0);
   EXPECT_EQ(tally.stuck, 0);
   EXPECT_EQ(lab.contacts(), 0);
+  EXPECT_LT(lab.max_error_m(), kAllowed_m);
+  EXPECT_TRUE(lab.losses.empty());
+}
+
+// A new goal every half second, to and fro or anywhere, whatever the vehicle does at the time.
+TEST(GoalsInFlight, NoSequenceOfCommitsTakesTheVehicleOutOfItsMargin) {
+  const int sequences = count_of("GOSHAWK_SEQUENCES", 30);
+  Random random(8);
+  double worst_m = 0.0;
+  int commits = 0;
+  std::size_t lost = 0;
+  for (int k = 0; k < sequences; ++k) {
+    SCOPED_TRACE(k);
+    FlightLab lab(default_map(), std::uint64_t(k) + 100);
+    const Vec3 sides[2] = {lab.random_place(), lab.random_place()};
+    const bool alternates = random.chance(0.5);
+    for (int i = 0; i < 10; ++i) {
+      ASSERT_TRUE(lab.goal(alternates ? sides[i % 2] : lab.random_place()));
+      lab.run(0.5);
+    }
+    lab.run(30.0, [&] { return lab.settled(); });
+    EXPECT_EQ(lab.state().state, navigator::State::arrived);
+    EXPECT_EQ(lab.contacts(), 0);
+    worst_m = std::max(worst_m, lab.max_error_m());
+    commits += lab.commits();
+    lost += lab.losses.size();
+  }
+  std::printf("%d sequences, %d commits: %zu lost, largest error %.4f m\n", sequences, commits,
+              lost, worst_m);
+  EXPECT_LT(worst_m, kAllowed_m);
+  EXPECT_EQ(lost, 0u);
 }
 
 }  // namespace

@@ -14,6 +14,7 @@ struct Config {
   double a_max_m_s2 = 2.0;
   LimitNorm limit_norm = LimitNorm::euclidean;
   double j_max_m_s3 = 0.0;
+  double j_max_in_flight_m_s3 = 20.0;  // of plans from a moving start
   double v_max_vertical_m_s = 0.0;
   double a_max_vertical_m_s2 = 0.0;
   UnknownSpace unknown = UnknownSpace::as_configured;
@@ -38,6 +39,14 @@ struct Config {
             .v_max_vertical_m_s = v_max_vertical_m_s,
             .a_max_vertical_m_s2 = a_max_vertical_m_s2};
   }
+  /// Of a plan from a moving start. It may turn from one full acceleration to the opposite one, and
+  /// without a limit does so faster than the vehicle can tilt.
+  Limits limits_in_flight() const {
+    Limits limits = this->limits();
+    const bool tighter = limits.j_max_m_s3 > 0.0 && limits.j_max_m_s3 <= j_max_in_flight_m_s3;
+    if (!tighter && j_max_in_flight_m_s3 > 0.0) limits.j_max_m_s3 = j_max_in_flight_m_s3;
+    return limits;
+  }
 };
 
 namespace detail {
@@ -53,6 +62,10 @@ void describe_request(Self& c, Visitor& visit) {
         "the vertical component apart",
         AtRunTime{Anything{}});
   visit("j_max_m_s3", c.j_max_m_s3, "m/s^3", "limit of the jerk's Euclidean length; 0: none",
+        AtRunTime{Range{0.0, 1e4}});
+  visit("j_max_in_flight_m_s3", c.j_max_in_flight_m_s3, "m/s^3",
+        "the same for plans from a moving start, if lower: so that the tracking error stays within "
+        "the margin in every turn; 0: j_max_m_s3 alone",
         AtRunTime{Range{0.0, 1e4}});
   visit("v_max_vertical_m_s", c.v_max_vertical_m_s, "m/s",
         "vertical speed limit, with limit_norm horizontal_vertical; 0: v_max_m_s",
