@@ -106,6 +106,8 @@ Result<std::vector<std::string>> launch_arguments(const BenchOptions& o,
     }
   }
   std::vector<std::string> arguments{o.launch, "--log-dir", folder, "--ros-args"};
+  // Stages take requests from one process alone: this one, not the navigator.
+  arguments.insert(arguments.end(), {"-r", "navigator:plan_request:=bench/unheard_requests"});
   for (const auto& file : args.params_files) {
     arguments.insert(arguments.end(), {"--params-file", file});
   }
