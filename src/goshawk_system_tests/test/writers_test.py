@@ -87,9 +87,9 @@ class SecondWriters(StackTest):
                 log = self.stack.launch.logs / f"{stage}.log"
                 ready = until(lambda f=log: f.read_text(errors="replace").count("ready: ") > 1, 30.0)
                 self.assertTrue(ready, self.stack.launch.tails())
-                self.assertTrue(until(lambda: self.arrives(PLACES[0]), 30.0),
-                                self.stack.launch.tails())
-                self.fly()
+                for place in PLACES:
+                    self.assertTrue(until(lambda p=place: self.arrives(p), 120.0),
+                                    self.stack.launch.tails())
                 heard = [r["message"] for r in self.stack.reports.lines()
                          if r["code"] == "second_writer" and f"what /{stage} (process {again}"
                          in r["message"]]
