@@ -46,7 +46,7 @@ def make_key(path):
 
 
 class Authority:
-    """Signs certificates and documents. Whoever has its key can make members of the domain."""
+    """Signs certificates and documents. Its key makes members of the domain."""
 
     def __init__(self, folder, days):
         self.folder, self.days = folder, days
@@ -131,7 +131,7 @@ def main():
         print(f"{folder} has an authority and certificates of {', '.join(names)}.\n"
               f"Fly with them:  goshawk launch flight --secure {folder}\n"
               f"Your own shell: export FASTRTPS_DEFAULT_PROFILES_FILE={folder}/operator/profile.xml\n"
-              f"Take {folder}/authority/ca_key.pem off the vehicle: whoever has it can make members.")
+              f"Take {folder}/authority/ca_key.pem off the vehicle: this key makes members of the domain.")
     return DONE
 
 

@@ -73,7 +73,7 @@ void check_topic(const Owners& names, const std::string& topic,
     }
   }
   if (findings.size() > before) return;
-  // Whoever asks comes and goes.
+  // Clients come and go.
   if (writers == 0 && readers > 0 && topic != "/parameter_request") {
     std::set<std::string> all;
     for (const auto& e : ends) all.insert(who(names, e));

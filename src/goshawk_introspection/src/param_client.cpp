@@ -16,7 +16,7 @@ using goshawk_msgs::msg::ParameterAnswer;
 using goshawk_msgs::msg::ParameterRequest;
 namespace verb = goshawk_msgs::msg::ParameterRequest_Constants;
 
-constexpr double kSurely_s = 3.0;     // six announcements of whoever is there
+constexpr double kSurely_s = 3.0;     // six announcements of each node
 constexpr double kAskAgain_s = 0.25;  // discovery is not done at one moment for both ways
 const runtime::Qos kQos = runtime::Qos::reliable_last(50);
 

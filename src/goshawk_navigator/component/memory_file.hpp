@@ -22,7 +22,7 @@ struct StoredMemory {
 std::vector<unsigned char> to_bytes(const StoredMemory& stored);
 Result<StoredMemory> from_bytes(const std::vector<unsigned char>& bytes);
 
-/// Replaces the file as a whole: whoever dies meanwhile leaves the old one or the new one.
+/// Replaces the file as a whole: a process that dies meanwhile leaves the old file or the new one.
 /// @return io_failed with the path
 Status write_memory(const std::string& path, const StoredMemory& stored);
 /// @return io_failed; the memory of a navigator that has done nothing if there is no file

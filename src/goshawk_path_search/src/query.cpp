@@ -6,7 +6,7 @@ namespace goshawk::path_search {
 
 Status StopSignal::check() const {
   if (token.stop_requested()) {
-    return fail(ErrorCode::cancelled, "the search was cancelled by whoever asked for it");
+    return fail(ErrorCode::cancelled, "the search was cancelled by its caller");
   }
   if (deadline && Clock::now() >= *deadline) {
     return fail(ErrorCode::deadline_exceeded,

@@ -27,7 +27,7 @@ class WriterGuard {
   void found(const Participant& writer);
   void lost(const Participant& writer);
 
-  /// @param part 0: whoever writes the group; else one process for each value
+  /// @param part 0: one process for the group; else one for each value
   /// @param topic as people know it, for the sentence
   bool admits(const Participant& writer, std::uint8_t part, const std::string& topic);
 

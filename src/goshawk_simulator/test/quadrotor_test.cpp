@@ -277,7 +277,7 @@ TEST(Quadrotor, WithoutCommandsItHoldsThenLandsStraightDown) {
   }
   EXPECT_EQ(quadrotor.control(), Control::landing);
   EXPECT_NEAR(quadrotor.state().position_map.z(), config.land_height_m, 0.01);
-  ASSERT_TRUE(quadrotor.command(hover(quadrotor)));  // whoever commands again, has it again
+  ASSERT_TRUE(quadrotor.command(hover(quadrotor)));  // commands take it back
   EXPECT_EQ(quadrotor.control(), Control::commanded);
 }
 

@@ -70,7 +70,7 @@ def data_file(test, relative):
 
 
 def free_port():
-    """For who must be told one: not of those that the kernel gives to whoever asks for any."""
+    """For a process that is told its port: outside of the range from which the kernel hands out ports."""
     for port in random.SystemRandom().sample(range(10000, 32000), 100):
         with socket.socket() as s:
             try:
@@ -291,7 +291,7 @@ class SystemTest(unittest.TestCase):
 
 
 def note(text):
-    """A figure for whoever reads the log; never asserted."""
+    """A figure for the log; never asserted."""
     print(f"    {text}", file=sys.stderr, flush=True)
 
 

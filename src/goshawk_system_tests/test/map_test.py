@@ -110,7 +110,7 @@ class LiveMap(MapCase):
                                                       (8.1, 3.1, 2.1)) == "occupied"))
         self.assertGreater(second["to_version"], update["to_version"])
 
-        # Whoever comes late gets the whole of it within a second or two.
+        # A late joiner gets the whole map within a second or two.
         late = until(lambda: self.late_version() >= second["to_version"], 15.0, 0.5)
         self.assertTrue(late, "the latched map stays old")
         self.assertTrue(server.alive())

@@ -81,7 +81,7 @@ TEST(CommitGate, ATrajectoryThatIsFoundTouchingIsRefusedWheneverThatWasSaid) {
   for (const SecondOpinion opinion : {SecondOpinion::heed, SecondOpinion::require}) {
     CommitGate gate(config_with(opinion));
     gate.hear(3, {ErrorCode::collision, "touches at (1, 2, 3) m"});
-    gate.hear(3, {ErrorCode::ok, ""});  // whoever says so
+    gate.hear(3, {ErrorCode::ok, ""});  // from any process
     gate.put(commit(3, 7));
     const auto release = gate.release(true, 7, 0);
     ASSERT_TRUE(release);

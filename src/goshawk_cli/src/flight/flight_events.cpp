@@ -7,7 +7,7 @@ namespace goshawk::cli {
 void FlightEvents::add(std::int64_t at_ns, const std::string& event, Json what) {
   Json line{{"at_ns", at_ns}, {"event", event}};
   line.update(what);
-  // Flushed: whoever waits for an event reads the file while the flight goes on.
+  // Flushed: the file is read during the flight, to wait for an event.
   file_ << line.dump(-1, ' ', false, Json::error_handler_t::replace) << std::endl;
 }
 

@@ -91,7 +91,7 @@ TEST_F(ReceiveFilter, HoldsParticipantsToTheirPort) {
   EXPECT_THAT(victim_->last_refusal(), HasSubstr("sends from another port"));
 }
 
-// By RTPS, whoever names a participant may say that it has left.
+// RTPS lets any sender that names a participant say that it has left.
 TEST_F(ReceiveFilter, KeepsAPeerThatAStrangerSaysHasLeft) {
   expect_talk();
   const auto heard = heard_.all();

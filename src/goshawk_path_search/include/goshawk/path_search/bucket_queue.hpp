@@ -38,7 +38,7 @@ class BucketQueue {
     last_ = kNone;
   }
 
-  /// @param note for whoever takes it
+  /// @param note handed out with it
   void push(std::uint32_t node, Cost key, std::uint32_t note) {
     const Cost above = std::max(key - base_, Cost{0});
     const auto bucket = std::uint32_t(above >> kShift);
