@@ -114,6 +114,39 @@ inline bool sound(const Limits& l) {
          optional(l.v_max_vertical) && optional(l.a_max_vertical) && l.norm >= 0 && l.norm <= 2;
 }
 
+/// A start above a limit: how far above it, and until when, the first pieces may be.
+struct Allowance {
+  double v_factor = 1.0, a_factor = 1.0, until = 0.0;  // [s]
+};
+inline Allowance allowance(const State& start, const Limits& limits) {
+  const double v0 = use(start.velocity, limits.norm, limits.v_max, limits.v_max_vertical);
+  const double a0 = use(start.acceleration, limits.norm, limits.a_max, limits.a_max_vertical);
+  if (!(v0 > 1.0 + 1e-6 || a0 > 1.0 + 1e-6)) return {};
+  const double a_factor = std::max(1.0, a0);
+  return {std::max(1.0, v0) + a_factor * 0.1 * limits.a_max / limits.v_max, a_factor,
+          2.0 * std::max(0.0, v0 - 1.0) * limits.v_max / limits.a_max + 0.5};
+}
+struct Derivatives {
+  std::vector<Point> velocity, acceleration, jerk;
+};
+inline void raise_limits(Verdict& v, const Derivatives& d, const Limits& limits, double v_factor,
+                         double a_factor) {
+  raise(v.velocity,
+        limits.v_max *
+            (largest_use(d.velocity, limits.norm, limits.v_max, limits.v_max_vertical) - v_factor));
+  raise(v.acceleration, limits.a_max * (largest_use(d.acceleration, limits.norm, limits.a_max,
+                                                    limits.a_max_vertical) -
+                                        a_factor));
+  if (limits.j_max > 0.0) {
+    raise(v.jerk, limits.j_max * (largest_use(d.jerk, 0, limits.j_max, 0.0) - 1.0));
+  }
+}
+inline void raise_continuity(Verdict& v, const State& before, const State& after) {
+  raise(v.continuity_position, length(difference(after.position, before.position)));
+  raise(v.continuity_velocity, length(difference(after.velocity, before.velocity)));
+  raise(v.continuity_acceleration, length(difference(after.acceleration, before.acceleration)));
+}
+
 }  // namespace detail
 
 /// @return what holds; a trajectory without pieces, or with a polytope that is not there, does not
@@ -125,15 +158,7 @@ inline Verdict check(const std::vector<Piece>& pieces, const std::vector<Polytop
     if (p.polytope < polytopes.size() && !always(polytopes[p.polytope])) v.validity = -HUGE_VAL;
   }
   if (pieces.empty() || !sound(limits)) v.position = v.velocity = v.acceleration = HUGE_VAL;
-  // A start above a limit: how far above, and until when, the first pieces may be.
-  double v_factor = 1.0, a_factor = 1.0, until = 0.0;
-  const double v0 = use(start.velocity, limits.norm, limits.v_max, limits.v_max_vertical);
-  const double a0 = use(start.acceleration, limits.norm, limits.a_max, limits.a_max_vertical);
-  if (v0 > 1.0 + 1e-6 || a0 > 1.0 + 1e-6) {
-    a_factor = std::max(1.0, a0);
-    v_factor = std::max(1.0, v0) + a_factor * 0.1 * limits.a_max / limits.v_max;
-    until = 2.0 * std::max(0.0, v0 - 1.0) * limits.v_max / limits.a_max + 0.5;
-  }
+  const Allowance allowed = allowance(start, limits);
   double begin = 0.0;
   State before;
   for (std::size_t k = 0; k < pieces.size(); ++k) {
@@ -144,36 +169,24 @@ inline Verdict check(const std::vector<Piece>& pieces, const std::vector<Polytop
       return v;
     }
     const std::vector<Point> points(piece.control_points.begin(), piece.control_points.end());
-    const auto velocity = derivative(points, piece.duration);
-    const auto acceleration = derivative(velocity, piece.duration);
+    Derivatives d{derivative(points, piece.duration), {}, {}};
+    d.acceleration = derivative(d.velocity, piece.duration);
+    d.jerk = derivative(d.acceleration, piece.duration);
     const Polytope& home = polytopes[piece.polytope];
     for (const Point& p : points) raise(v.position, outside(home, p));
     if (!always(home)) {
       raise(v.validity, home.valid_from - begin);
       raise(v.validity, begin + piece.duration - home.valid_until);
     }
-    const bool early = begin < until;
-    raise(v.velocity,
-          limits.v_max * (largest_use(velocity, limits.norm, limits.v_max, limits.v_max_vertical) -
-                          (early ? v_factor : 1.0)));
-    raise(v.acceleration, limits.a_max * (largest_use(acceleration, limits.norm, limits.a_max,
-                                                      limits.a_max_vertical) -
-                                          (early ? a_factor : 1.0)));
-    if (limits.j_max > 0.0) {
-      raise(
-          v.jerk,
-          limits.j_max *
-              (largest_use(derivative(acceleration, piece.duration), 0, limits.j_max, 0.0) - 1.0));
-    }
-    const State first{points.front(), velocity.front(), acceleration.front()};
+    const bool early = begin < allowed.until;
+    raise_limits(v, d, limits, early ? allowed.v_factor : 1.0, early ? allowed.a_factor : 1.0);
+    const State first{points.front(), d.velocity.front(), d.acceleration.front()};
     if (k == 0) {
       v.start = apart(first, start);
     } else {
-      raise(v.continuity_position, length(difference(first.position, before.position)));
-      raise(v.continuity_velocity, length(difference(first.velocity, before.velocity)));
-      raise(v.continuity_acceleration, length(difference(first.acceleration, before.acceleration)));
+      raise_continuity(v, before, first);
     }
-    before = {points.back(), velocity.back(), acceleration.back()};
+    before = {points.back(), d.velocity.back(), d.acceleration.back()};
     begin += piece.duration;
   }
   raise(v.goal, apart(before, goal));

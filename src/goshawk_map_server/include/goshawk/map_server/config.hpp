@@ -54,9 +54,10 @@ struct Config {
   std::string journal_file = "";
 };
 
+namespace detail {
+
 template <typename Self, typename Visitor>
-requires std::same_as<std::remove_const_t<Self>, Config>
-void describe(Self& c, Visitor&& visit) {
+void describe_file(Self& c, Visitor& visit) {
   visit("map_file", c.map_file, "",
         "map to load (.bt, .ot, .pcd, .ply with points or faces, .3dmap); empty: the box begins as "
         "unknown space",
@@ -87,8 +88,10 @@ void describe(Self& c, Visitor&& visit) {
         Anything{});
   visit("cloud_origin_y_m", c.cloud_origin_y_m, "m", "the same for y", Anything{});
   visit("cloud_origin_z_m", c.cloud_origin_z_m, "m", "the same for z", Anything{});
-  visit("max_range_m", c.max_range_m, "m", "longest ray of a scan that may hit something",
-        AtRunTime{Range::positive(1000.0)});
+}
+
+template <typename Self, typename Visitor>
+void describe_window(Self& c, Visitor& visit) {
   visit("use_box", c.use_box, "", "cut the map to the box; needed if map_file is empty",
         Anything{});
   visit("box_x_min_m", c.box_x_min_m, "m", "lower corner of the box", Anything{});
@@ -103,8 +106,11 @@ void describe(Self& c, Visitor&& visit) {
         "comes back with it",
         Anything{});
   visit("max_kept_mb", c.max_kept_mb, "MB",
-        "memory for what left the box; beyond it, what left first is forgotten",
-        Range{1.0, 1e6});
+        "memory for what left the box; beyond it, what left first is forgotten", Range{1.0, 1e6});
+}
+
+template <typename Self, typename Visitor>
+void describe_beliefs(Self& c, Visitor& visit) {
   visit("hits_needed", c.hits_needed, "",
         "scans that must hit a voxel seen free for long before it is an obstacle; a voxel that was "
         "unknown is one at the first hit",
@@ -116,6 +122,10 @@ void describe(Self& c, Visitor&& visit) {
         "points of a scan nearer than this to the vehicle's centre are the vehicle itself, and the "
         "space it flew through is free; 0: neither",
         Range{0.0, 100.0});
+}
+
+template <typename Self, typename Visitor>
+void describe_sensor(Self& c, Visitor& visit) {
   visit("sensor_frame", c.sensor_frame, "",
         "a sensor's frame that is not on /tf_static: the parameters below place it in base_link",
         Anything{});
@@ -127,6 +137,10 @@ void describe(Self& c, Visitor&& visit) {
         Anything{});
   visit("sensor_pitch_rad", c.sensor_pitch_rad, "rad", "the same about y", Anything{});
   visit("sensor_yaw_rad", c.sensor_yaw_rad, "rad", "the same about z", Anything{});
+}
+
+template <typename Self, typename Visitor>
+void describe_poses(Self& c, Visitor& visit) {
   visit("pose_wait_s", c.pose_wait_s, "s",
         "how long a cloud waits for odometry as new as its last point; then it is dropped",
         Range{0.0, 10.0});
@@ -134,15 +148,29 @@ void describe(Self& c, Visitor&& visit) {
         "no pose is interpolated between odometry farther apart than this", Range{0.0, 10.0});
   visit("max_points", c.max_points, "", "clouds with more points are refused",
         Range{1.0, 100'000'000.0});
-  visit(
-      "publish_raw", c.publish_raw, "",
-      "map/voxels also brings the obstacles as measured: a corridor_builder with margin sphere "
-      "needs them",
-      Anything{});
-  visit("journal_file", c.journal_file, "",
-        "keeps what scans have told, so that a map server that was killed goes on with the map that "
-        "it had; a launch names one in its folder of logs; empty: none",
+}
+
+}  // namespace detail
+
+template <typename Self, typename Visitor>
+requires std::same_as<std::remove_const_t<Self>, Config>
+void describe(Self& c, Visitor&& visit) {
+  detail::describe_file(c, visit);
+  visit("max_range_m", c.max_range_m, "m", "longest ray of a scan that may hit something",
+        AtRunTime{Range::positive(1000.0)});
+  detail::describe_window(c, visit);
+  detail::describe_beliefs(c, visit);
+  detail::describe_sensor(c, visit);
+  detail::describe_poses(c, visit);
+  visit("publish_raw", c.publish_raw, "",
+        "map/voxels also brings the obstacles as measured: a corridor_builder with margin sphere "
+        "needs them",
         Anything{});
+  visit(
+      "journal_file", c.journal_file, "",
+      "keeps what scans have told, so that a map server that was killed goes on with the map that "
+      "it had; a launch names one in its folder of logs; empty: none",
+      Anything{});
 }
 
 /// The config in the terms of the functions that do the work. @pre values as describe() allows
