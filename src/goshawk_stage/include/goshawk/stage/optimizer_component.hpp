@@ -61,16 +61,13 @@ class OptimizerComponent : public runtime::Component {
     if (!solution) return reporter_.failed(request.id, solution.error(), timing);
     publish(m, *solution, compute_ns);
     const Trajectory& trajectory = solution->trajectory();
-    Counters counters{{"pieces", double(trajectory.pieces.size())},
-                      {"duration_s", trajectory.duration_s()},
-                      {"length_m", trajectory.length_m()},
-                      {"jerk_cost", solution->jerk_cost},
-                      {"start_excess_s", solution->certified.certificate().start_excess_s}};
-    // Not every optimizer iterates.
-    if (solution->iterations > 0) {
-      counters.emplace_back("iterations", double(solution->iterations));
-    }
-    reporter_.answered(request.id, timing, std::move(counters));
+    reporter_.answered(request.id, timing,
+                       {{"pieces", double(trajectory.pieces.size())},
+                        {"iterations", double(solution->iterations)},
+                        {"duration_s", trajectory.duration_s()},
+                        {"length_m", trajectory.length_m()},
+                        {"jerk_cost", solution->jerk_cost},
+                        {"start_excess_s", solution->certified.certificate().start_excess_s}});
   }
 
   template <typename Solution>
