@@ -20,6 +20,7 @@ class TrackerExaminer {
   Result<Report> examine(const std::vector<goshawk_msgs::msg::CommittedTrajectory>& recorded);
 
  private:
+  static constexpr double kBegins_in_s = 0.3;  // [s] from the commit to the start
   using Committed = goshawk_msgs::msg::CommittedTrajectory;
 
   struct Flight {
