@@ -158,8 +158,10 @@ Status write_memory(const std::string& path, const StoredMemory& stored) {
 Result<StoredMemory> read_memory(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) {
-    if (!std::filesystem::exists(path)) return StoredMemory{};
-    return fail(ErrorCode::io_failed, path + " cannot be read: " + std::strerror(errno));
+    const std::string why = std::strerror(errno);
+    std::error_code error;  // of a folder that may not be looked into
+    if (!std::filesystem::exists(path, error) && !error) return StoredMemory{};
+    return fail(ErrorCode::io_failed, path + " cannot be read: " + why);
   }
   auto stored = from_bytes(Bytes(std::istreambuf_iterator<char>(file), {}));
   if (stored) return stored;

@@ -195,10 +195,7 @@ class NavigatorComponent : public Component {
   }
 
   void on_report(const msg::StageReport& m) {
-    Error outcome{ErrorCode::invalid_input, m.message()};
-    for (const ErrorCode code : all_error_codes()) {
-      if (to_string(code) == m.code()) outcome.code = code;
-    }
+    const Error outcome{conversions::error_code_of(m.code()), m.message()};
     navigator_.on_report(m.request_id(), conversions::stage_role_of(m.stage()), outcome,
                          node_.monotonic_ns(), moved_m(m));
     carry_out();

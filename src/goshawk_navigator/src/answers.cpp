@@ -145,7 +145,7 @@ void Navigator::on_tracker_report(std::uint64_t id, const Error& outcome, std::i
     lost_id_ = id;
     schedule_.clear();
   } else {
-    schedule_.drop_from(id);
+    schedule_.drop_refused(id);
   }
   pursue_again({outcome.code, "tracker: " + outcome.message}, now_ns);
 }
@@ -167,7 +167,7 @@ void Navigator::take_up_again(std::uint64_t followed_id, std::int64_t now_ns) {
 void Navigator::pursue_again(const Error& why, std::int64_t now_ns) {
   if (state_ == State::failed || state_ == State::idle) return say_what_is_flown(now_ns);
   drop_open();
-  if (++pursuit_.failures > config_.max_attempts) return give_up(why, now_ns);
+  if (++pursuit_.failures >= config_.max_attempts) return give_up(why, now_ns);
   pursuit_.open = true;
   pursuit_.starts = 0;
   pursuit_.not_before_ns = 0;

@@ -88,7 +88,10 @@ void Navigator::on_odometry(const RigidBodyState& vehicle, std::int64_t now_ns) 
 
 void Navigator::on_tracking(std::uint64_t id, bool follows, std::int64_t now_ns) {
   tracked_ = Tracked{id, now_ns};
-  if (follows) take_up_again(id, now_ns);
+  if (follows) {
+    if (Leg* leg = schedule_.find(id)) leg->accepted = true;  // an answer, too
+    take_up_again(id, now_ns);
+  }
   say_what_is_flown(now_ns);
 }
 

@@ -20,8 +20,11 @@ void Schedule::add(Leg leg) {
   legs_.push_back(std::move(leg));
 }
 
-void Schedule::drop_from(std::uint64_t id) {
-  legs_.erase(std::ranges::find(legs_, id, &Leg::id), legs_.end());
+void Schedule::drop_refused(std::uint64_t id) {
+  const auto refused = std::ranges::find(legs_, id, &Leg::id);
+  const auto unanswered =
+      std::find_if(legs_.begin(), refused, [](const Leg& leg) { return !leg.accepted; });
+  legs_.erase(unanswered, legs_.end());
 }
 
 void Schedule::forget_before(std::int64_t now_ns) {

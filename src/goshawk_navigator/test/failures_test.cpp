@@ -151,7 +151,7 @@ TEST(Navigator, DoesNotPlanFromRestWhileTheVehicleMovesByItself) {
 
 TEST(Navigator, AVehicleThatEndsElsewhereHasNotArrivedAndIsSentAgain) {
   Config config;
-  config.max_attempts = 1;
+  config.max_attempts = 2;
   Harness h(config);
   h.goal(kGoal);
   h.answer();

@@ -123,6 +123,27 @@ TEST(Pursuit, ATrajectoryThatTheTrackerRefusesInFlightLeavesTheOneBefore) {
   EXPECT_EQ(h.navigator.state(), State::arrived);
 }
 
+// As after a restart of the navigator beside others: its first commits may not be heard.
+TEST(Pursuit, WhatTheTrackerNeverAnsweredIsNotPlannedFrom) {
+  Harness h;
+  h.goal(kGoal);
+  h.answer();
+  h.flown.clear();  // not heard: the vehicle stays where it is
+  h.pass(0.5);
+  h.goal(Vec3(0, 4, 1));
+  EXPECT_TRUE(h.plans.back().start_time_ns.has_value());
+  h.answer();
+  h.flown.clear();
+  h.tracker_says(h.commits.back().id(), {ErrorCode::not_at_start, "2.7 m away"});
+  h.pass(0.5);
+  ASSERT_EQ(h.plans.size(), 3u);
+  EXPECT_FALSE(h.plans[2].start_time_ns.has_value());
+  EXPECT_EQ(h.plans[2].start.position, kHome);
+  h.answer();
+  h.pass(6.0);
+  EXPECT_EQ(h.navigator.state(), State::arrived);
+}
+
 TEST(Pursuit, ATrajectoryThatTheTrackerLosesIsPlannedForAgainFromRest) {
   Harness h;
   h.goal(kGoal);

@@ -34,7 +34,11 @@ WriterGuard::WriterGuard(Context::Impl& context, const OnRefused& on_refused)
     : context_(context),
       on_refused_(on_refused),
       own_(participant_of(context.participant->guid().guidPrefix)),
-      rank_([&context](const Participant& p) { return context.listener.has_nodes(p) ? 1 : 0; }),
+      // The process itself comes first, in each part of a group.
+      rank_([&context, own = own_](const Participant& p) {
+        if (p == own) return 2;
+        return context.listener.has_nodes(p) ? 1 : 0;
+      }),
       writers_(own_, rank_) {}
 
 void WriterGuard::found(const Participant& writer) {

@@ -139,8 +139,9 @@ class TrackerComponent : public Component {
       return reporter_.failed(m.nominal().request().id(), received.error(), timing);
     }
     const std::int64_t start_ns = received->start_time_ns() - skew_ns + (now_ns - wall_ns);
+    const std::uint64_t id = received->id();
     const auto old = gate_.put({*std::move(received), start_ns, now_ns, timing.wire_ns});
-    if (old) {
+    if (old && *old != id) {  // else the navigator repeats itself
       reporter_.failed(*old, fail(ErrorCode::cancelled,
                                   fmt::format("trajectory {} waited to be checked, and a newer one "
                                               "has come",

@@ -26,8 +26,9 @@ class Schedule {
  public:
   /// Those that begin then or later are replaced, as in the tracker.
   void add(Leg leg);
-  /// The tracker did not take it: neither it nor what follows on it is flown.
-  void drop_from(std::uint64_t id);
+  /// The tracker did not take it: neither it nor what follows on it is flown, nor what it follows on
+  /// if that was never answered: the tracker answers in order, so it has not heard that.
+  void drop_refused(std::uint64_t id);
   /// Nothing of it is flown any more.
   void clear() { legs_.clear(); }
   /// Forgets legs that another has replaced by now.
