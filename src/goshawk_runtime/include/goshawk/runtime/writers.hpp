@@ -11,7 +11,7 @@ namespace goshawk::runtime {
 /// A process as a member of the domain: the prefix of its GUID.
 using Participant = std::array<std::byte, 12>;
 
-/// Who may be heard on a topic (docs/adr/0021-one-writer.md).
+/// Who may be heard on a topic (docs/adr/0013-one-writer.md).
 ///
 ///     node.subscribe<Odometry>("odom", Qos::best_effort(), callback, Writers::one("odom"));
 struct Writers {
