@@ -28,10 +28,23 @@ class OtherCampaign(Exception):
 
 
 def read_rows(folder):
+    """The rows of missions.jsonl, from which a row that was cut off is removed."""
     log = folder / "missions.jsonl"
     if not log.exists():
         return []
-    return [json.loads(line) for line in log.read_text().splitlines() if line.endswith("}")]
+    rows, text = [], log.read_text()
+    for line in text.splitlines():
+        try:
+            rows.append(json.loads(line))
+        except json.JSONDecodeError:
+            print(f"{log}: a row that was cut off is removed, and its mission is flown again",
+                  file=sys.stderr, flush=True)
+    whole = "".join(json.dumps(row) + "\n" for row in rows)
+    if whole != text:
+        part = log.with_suffix(".part")
+        part.write_text(whole)
+        part.rename(log)
+    return rows
 
 
 def keep_options(options):
@@ -85,11 +98,17 @@ class LocalEngine:
         """@param missions numbers of those to fly @return their rows, as they come"""
         with concurrent.futures.ThreadPoolExecutor(self.options.jobs or LOCAL_JOBS) as pool:
             flights = [pool.submit(self.flyer.fly, Mission(self.options, k)) for k in missions]
-            for flight in concurrent.futures.as_completed(flights):
-                row = flight.result()
-                # What was interrupted is not flown: the next campaign into this folder does.
-                if row["code"] != "cancelled" and not self.flyer.stopping:
-                    yield row
+            try:
+                for flight in concurrent.futures.as_completed(flights):
+                    row = flight.result()
+                    # What was interrupted is not flown: the next campaign into this folder does.
+                    if row["code"] != "cancelled" and not self.flyer.stopping:
+                        yield row
+            except BaseException:
+                # The others' rows would be lost: they are not flown to their end.
+                self.flyer.stop()
+                pool.shutdown(cancel_futures=True)
+                raise
 
 
 ENGINES = {"local": LocalEngine, "slurm": slurm_engine.Engine}

@@ -25,7 +25,8 @@ def summary(rows):
     energies = [r["energy_j"] for r in rows if r["energy_j"] is not None]
     result = {"missions": len(rows), "flights": legs, "arrived": sum(r["arrived"] for r in rows),
               "collisions": sum(r["verdict"] == "touched" for r in rows),
-              "not_judged": sum(r["legs"] > 0 and r["verdict"] == "not judged" for r in rows),
+              "not_judged": sum(r["legs"] > 0 and r["verdict"] not in ("safe", "touched")
+                                for r in rows),
               "failures_by_code": dict(codes),
               "smallest_clearance_m": min(clearances, default=None),
               "median_clearance_m": quantile(clearances, 0.5),

@@ -1,6 +1,7 @@
 """The switches of a stage's shim (faults/control.hpp): its wall clock, and datagrams that are lost."""
 
 import mmap
+import os
 import pathlib
 import struct
 
@@ -30,9 +31,19 @@ class FaultControl:
         return struct.unpack_from("=Q", self.memory, LOST_AT)[0]
 
 
-def environment(prefix, folder):
-    """What `goshawk fly` needs for its stages to have shims that look at this folder."""
+def shim_of(prefix):
+    return pathlib.Path(prefix) / "lib/goshawk/libgoshawk_fault_shim.so"
+
+
+def environment(shim, folder, env=os.environ):
+    """What `goshawk fly` needs for its stages to have shims that look at this folder.
+
+    @param env what it has already: its own options of these kinds stay"""
     return {"GOSHAWK_FAULTS": str(folder),
-            "LD_PRELOAD": str(pathlib.Path(prefix) / "lib/goshawk/libgoshawk_fault_shim.so"),
+            "LD_PRELOAD": joined(env.get("LD_PRELOAD"), str(shim)),
             # With sanitizers their library comes first, unless it is told that it need not.
-            "ASAN_OPTIONS": "verify_asan_link_order=0"}
+            "ASAN_OPTIONS": joined(env.get("ASAN_OPTIONS"), "verify_asan_link_order=0")}
+
+
+def joined(*texts):
+    return ":".join(text for text in texts if text)

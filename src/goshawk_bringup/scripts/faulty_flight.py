@@ -1,6 +1,5 @@
 """A flight with faults: injects them while `goshawk fly` runs, and notes when."""
 
-import errno
 import json
 import os
 import pathlib
@@ -14,6 +13,11 @@ import faults
 
 STEP_S = 0.01
 MOST_FOR_A_GOAL = 3  # then the flight may show that it recovers
+ENDING_S = 30.0      # for a flight whose stages have ended to end as well
+
+
+class NoStage(Exception):
+    """No stage of the flight runs."""
 
 
 def now_ns():
@@ -62,7 +66,8 @@ class FaultyFlight:
         switches.mkdir(exist_ok=True)
         self.controls = {s: fault_control.FaultControl(switches, s, seed)
                          for s in [*faults.STAGES, faults.PLANT]}
-        self.flight_env = {**env, **fault_control.environment(prefix, switches)}
+        self.flight_env = {**env, **fault_control.environment(
+            fault_control.shim_of(prefix), switches, env)}
 
     def program(self, name):
         return str(self.prefix / "bin" / name)
@@ -116,7 +121,7 @@ def domain_of(pids):
         for variable in variables:
             if variable.startswith(b"ROS_DOMAIN_ID="):
                 return variable.split(b"=")[1].decode()
-    raise OSError(errno.ESRCH, "no stage runs", "flight")
+    raise NoStage("no stage of the flight runs")
 
 
 class Injector:
@@ -139,7 +144,12 @@ class Injector:
                 break
             self.goals.append(self.events.count("goal"))
             row = {**fault.row(), "begin_ns": now_ns()}
-            fault.begin(self.flight)
+            try:
+                fault.begin(self.flight)
+            except NoStage:
+                if self.wait(ENDING_S, is_over):
+                    raise
+                break  # it came as the flight ended
             try:
                 self.wait(fault.duration_s, is_over)
             finally:

@@ -17,7 +17,7 @@ import faulty_flight
 from flown_track import Track
 
 DONE, NOT_DONE = 0, 1
-MISSION_TIMEOUT_S = 600.0
+PREPARATION_S = 120.0  # for a mission's world, launch and end, besides its goals
 TRIES = 3
 SPEED_FACTOR = 1.1  # no fault makes the vehicle faster than its limit times this
 V_MAX_M_S = 2.0     # the navigator's default
@@ -66,6 +66,7 @@ class Flyer:
     def __init__(self, options):
         self.options = options
         self.goshawk = str(pathlib.Path(options.prefix) / "bin/goshawk")
+        self.timeout_s = PREPARATION_S + options.goals * options.timeout_s
         # Each flight picks a domain of its own; in a given one they would meet.
         self.env = {k: v for k, v in os.environ.items() if k != "ROS_DOMAIN_ID"}
         self.lock, self.running, self.stopping = threading.Lock(), set(), False
@@ -85,13 +86,13 @@ class Flyer:
         try:
             if thread:
                 thread.start()
-            out, err = process.communicate(timeout=MISSION_TIMEOUT_S)
+            out, err = process.communicate(timeout=self.timeout_s)
             return process.returncode, json.loads(out)
         except subprocess.TimeoutExpired:
-            process.send_signal(signal.SIGINT)
+            self.interrupt(process)
             process.communicate()
             return NOT_DONE, {"ok": False, "code": "stage_silent", "message":
-                              f"no result within {MISSION_TIMEOUT_S:g} s"}
+                              f"no result within {self.timeout_s:g} s"}
         except json.JSONDecodeError:
             return NOT_DONE, {"ok": False, "code": "io_failed", "message": f"no JSON: {err[-300:]}"}
         finally:
@@ -104,7 +105,11 @@ class Flyer:
         with self.lock:
             self.stopping = True
             for process in self.running:
-                process.send_signal(signal.SIGINT)
+                self.interrupt(process)
+
+    @staticmethod
+    def interrupt(process):
+        process.send_signal(signal.SIGINT)
 
     def fly(self, mission):
         """A flight whose track has gaps is not judged: the machine was too busy, so once more."""
@@ -117,6 +122,8 @@ class Flyer:
     def fly_once(self, mission):
         folder = self.options.output / f"mission_{mission.number:05d}"
         folder.mkdir(parents=True, exist_ok=True)
+        for name in ("events.jsonl", "flown.csv"):  # of an earlier try
+            (folder / name).unlink(missing_ok=True)
         world = folder / "made.bt"
         status, result = self.call("world", world, *mission.world_arguments(self.options.size))
         if status != DONE:
@@ -140,8 +147,6 @@ class FaultyMission:
 
     def fly(self, words):
         options = self.flyer.options
-        events = self.folder / "events.jsonl"
-        events.unlink(missing_ok=True)
         flight = faulty_flight.FaultyFlight(
             options.prefix, self.folder, self.world, [float(x) for x in options.size.split(",")],
             self.flyer.env, self.mission.fault_seed)
@@ -151,8 +156,9 @@ class FaultyMission:
         def beside(process):
             try:
                 self.rows = injector.run(lambda: process.poll() is not None)
-            except OSError as error:
+            except Exception as error:
                 self.fault = error
+                self.flyer.interrupt(process)
 
         status, result = self.flyer.call(
             *words, *self.truth(), "--keep-going", "-p", f"map_server:map_file:={flight.world}",
@@ -178,13 +184,15 @@ class FaultyMission:
         stalls = sum(r["kind"] == "stall" and faults.PLANT in r["targets"] for r in self.rows)
         track = Track(path, stalls)
         at_ns = begin[-1]["at_ns"]
+        parts = track.parts()
+        if not parts:
+            return {"verdict": "not flown"}
         speed, fast_s = track.fastest()
         limit = self.limit_m_s()
         if speed > SPEED_FACTOR * limit:
             fault_report.blame(self.rows, at_ns + fast_s * 1e9, "too_fast")
-        parts = track.parts()
         row = {"max_speed_m_s": round(speed, 3), "speed_ratio": round(speed / limit, 3),
-               "unseen": len(parts) - 1, "verdict": "safe", "clearance_m": math.inf}
+               "unseen": len(parts) - 1, "verdict": "safe", "clearance_m": None}
         for part in parts:
             table = self.folder / "judged.csv"
             track.write(table, part)
@@ -193,7 +201,7 @@ class FaultyMission:
                 return {**row, "verdict": "not judged", "clearance_m": None,
                         "code": judged["code"], "message": judged["message"]}
             flown = judged["flown"]
-            row["clearance_m"] = min(row["clearance_m"], flown["smallest_m"])
+            row["clearance_m"] = smaller(row["clearance_m"], flown["smallest_m"])
             if flown["touched"]:
                 row["verdict"] = "touched"
                 touched_ns = at_ns + track.stamp_at(track.times[part.start] + flown["at_s"]) * 1e9
@@ -204,6 +212,11 @@ class FaultyMission:
         given = [p.split(":=")[1] for p in self.flyer.options.parameters
                  if p.startswith("navigator:v_max_m_s:=")]
         return float(given[-1]) if given else V_MAX_M_S
+
+
+def smaller(a, b):
+    """Of two clearances; None is that of a world without obstacles."""
+    return min((x for x in (a, b) if x is not None), default=None)
 
 
 def outcome(status, result, folder):

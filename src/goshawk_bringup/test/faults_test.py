@@ -92,7 +92,7 @@ class Shim(Folder):
         process = subprocess.Popen(
             [sys.executable, "-c", program], text=True, stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
-            env={**os.environ, "GOSHAWK_FAULTS": str(self.folder), "LD_PRELOAD": SHIM,
+            env={**os.environ, **fault_control.environment(SHIM, self.folder),
                  "SUPERVISOR_PROCESS_NAME": stage})
         self.addCleanup(process.stdout.close)
         self.addCleanup(process.stdin.close)

@@ -2,52 +2,59 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <utility>
 
 namespace goshawk::map_server {
 namespace {
 
-// Published before the server died, but not yet in its journal: far fewer scans.
-constexpr std::uint64_t kVersionsToSpare = 1000;
+// Versions that an earlier life may have published and its journal does not have, because those
+// scans changed nothing or their bricks were not written: months of scans.
+constexpr std::uint64_t kVersionsToSpare = 1'000'000'000;
 
-Box box_of(const Config& c) {
-  return {Vec3(c.box_x_min_m, c.box_y_min_m, c.box_z_min_m),
-          Vec3(c.box_x_max_m, c.box_y_max_m, c.box_z_max_m)};
-}
-
-Result<Beginning> from(MapSource source, const Config& config) {
-  const auto options = live_options(config);
-  if (!options) return options.error();
-  auto map = LiveMap::from_source(source, voxelize_options(config), growth(config), *options);
-  if (!map) return map.error();
-  return Beginning{.map = *std::move(map), .notes = std::move(source.notes)};
-}
-
-/// Without a journal.
-Result<Beginning> begin_plain(const Config& config) {
+/// What a map begins with before any journal. @return without a file: the box, as unknown space
+Result<std::optional<MapSource>> read_file(const Config& config) {
   if (config.follow_vehicle && !config.use_box) {
     return fail(ErrorCode::invalid_parameter,
                 "follow_vehicle needs use_box: the box is the window that moves");
   }
-  if (!config.map_file.empty()) {
-    LoadOptions loading = load_options(config);
-    if (config.follow_vehicle) loading.box = {};  // what lies outside is kept beside the window
-    auto source = load_map(config.map_file, loading);
-    if (!source) return source.error();
-    return from(*std::move(source), config);
-  }
-  if (!config.use_box) {
+  if (config.map_file.empty()) {
+    if (config.use_box) return std::optional<MapSource>();
     return fail(ErrorCode::invalid_parameter,
                 "map_server has neither a map_file nor use_box: name a map, or the box that begins "
                 "as unknown space");
   }
+  LoadOptions loading = load_options(config);
+  if (config.follow_vehicle) loading.box = {};  // what lies outside is kept beside the window
+  auto source = load_map(config.map_file, loading);
+  if (!source) return source.error();
+  return std::optional<MapSource>(*std::move(source));
+}
+
+Result<Beginning> begin_with(const std::optional<MapSource>& source, const Config& config) {
   const auto options = live_options(config);
   if (!options) return options.error();
-  auto map =
-      LiveMap::unknown_space(box_of(config), config.resolution_m, growth(config), *options);
+  const VoxelizeOptions what = voxelize_options(config);
+  auto map = source ? LiveMap::from_source(*source, what, growth(config), *options)
+                    : LiveMap::unknown_space(what.box.value(), config.resolution_m, growth(config),
+                                             *options);
   if (!map) return map.error();
-  return Beginning{.map = *std::move(map)};
+  Beginning beginning{.map = *std::move(map)};
+  if (source) beginning.notes = source->notes;
+  return beginning;
+}
+
+/// The map before the first scan, as bits: what a journal goes with.
+Result<RawVoxels> base_of(const std::optional<MapSource>& source, const Config& config) {
+  VoxelizeOptions what = voxelize_options(config);
+  if (source) {
+    if (config.follow_vehicle) what.box = {};
+    return voxelize(*source, what);
+  }
+  const auto geometry = raster_of(what.box.value(), config.resolution_m, config.max_voxels);
+  if (!geometry) return geometry.error();
+  return RawVoxels{*geometry, BitGrid(geometry->size, true), BitGrid(geometry->size, false)};
 }
 
 Error told(const Config& config, const Error& why, const std::string& what_now) {
@@ -68,71 +75,94 @@ Result<MapJournal> open_journal(const Config& config, const JournalIdentity& ide
   return MapJournal::create(config.journal_file, identity);
 }
 
-/// A map that follows keeps what lies outside of its window: the rest of the file, and bricks.
-Result<RawVoxels> whole_of(RawVoxels window, const JournalContent& content, const Config& config) {
-  if (!config.follow_vehicle) return window;
-  if (!config.map_file.empty()) {
-    LoadOptions loading = load_options(config);
-    loading.box = {};
-    const auto source = load_map(config.map_file, loading);
-    if (!source) return source.error();
-    auto voxels = voxelize(*source, {});
-    if (!voxels) return voxels.error();
-    window = *std::move(voxels);
+/// The map with what the journal holds. One that follows also keeps bricks outside of its window.
+Result<Beginning> take_over(const RawVoxels& base, const JournalContent& content,
+                            const std::optional<MapSource>& source, const Config& config) {
+  MapSource with_journal;
+  if (source) with_journal.notes = source->notes;
+  with_journal.voxels = base;
+  if (config.follow_vehicle) {
+    auto wide = content.widened(base, config.max_voxels);
+    if (!wide) return wide.error();
+    with_journal.voxels = *std::move(wide);
   }
-  return content.widened(window, config.max_voxels);
+  content.write_into(*with_journal.voxels);
+  auto beginning = begin_with(with_journal, config);
+  if (beginning) beginning->bricks = content.bricks.size();
+  return beginning;
 }
 
-/// The map with what the journal holds.
-Result<Beginning> take_over(RawVoxels window, const MapJournal& journal, const Config& config,
-                            std::vector<std::string> notes) {
-  auto whole = whole_of(std::move(window), journal.content(), config);
-  if (!whole) return whole.error();
-  RawVoxels voxels = *std::move(whole);
-  journal.content().write_into(voxels);
-  MapSource source;
-  source.voxels = std::move(voxels);
-  auto beginning = from(std::move(source), config);
+Error damage_of(const JournalContent& content, const Config& config) {
+  return told(config,
+              {ErrorCode::map_malformed,
+               fmt::format("{} bricks were damaged or cut off, or are of a scan with such a brick",
+                           content.damaged)},
+              fmt::format("They are left out; {} bricks are whole", content.bricks.size()));
+}
+
+/// What no earlier life has used: the clock is ahead of all, unless it was set back.
+std::uint64_t unused_version(std::uint64_t in_journal, std::int64_t now_ns) {
+  const auto now_ms = std::uint64_t(std::max<std::int64_t>(now_ns, 0) / 1'000'000);
+  return std::max(now_ms, in_journal + kVersionsToSpare);
+}
+
+/// The next life finds this version, even if no scan changes the map any more.
+Status note_version(MapJournal& journal, std::uint64_t version) {
+  if (journal.content().bricks.empty()) return success();
+  return journal.append(version, {&journal.content().bricks.begin()->second, 1});
+}
+
+/// With what the journal holds, if that can be; else without, and `fault` says so.
+Result<Beginning> begin_with_content(const JournalContent& content, const RawVoxels& base,
+                                     const std::optional<MapSource>& source, const Config& config,
+                                     std::optional<Error>& fault) {
+  if (content.damaged > 0) fault = damage_of(content, config);
+  if (content.bricks.empty()) return begin_with(source, config);
+  auto beginning = take_over(base, content, source, config);
+  if (beginning) return beginning;
+  fault = told(config, beginning.error(), "The map begins as it was before the first scan");
+  return begin_with(source, config);
+}
+
+Result<Beginning> begin_with_journal(std::optional<MapSource> source, const Config& config,
+                                     std::int64_t now_ns) {
+  const auto base = base_of(source, config);
+  if (!base) return base.error();
+  if (source) {  // its bits are shared: nothing is read or voxelized again
+    source->voxels = *base;
+    source->tree.reset();
+  }
+  std::error_code ignored;
+  const bool is_new = !std::filesystem::exists(config.journal_file, ignored);
+  std::optional<Error> fault;
+  auto journal = open_journal(config, {base->geometry.resolution_m, checksum_of(*base)}, fault);
+  if (!journal) {
+    auto beginning = begin_with(source, config);
+    if (!beginning) return beginning;
+    beginning->versions_before = unused_version(0, now_ns);
+    beginning->journal_fault = journal.error();
+    return beginning;
+  }
+  auto beginning = begin_with_content(journal->content(), *base, source, config, fault);
   if (!beginning) return beginning;
-  beginning->notes = std::move(notes);
-  beginning->bricks = journal.content().bricks.size();
+  if (!is_new) {
+    beginning->versions_before = unused_version(journal->content().version, now_ns);
+    const Status noted = note_version(*journal, beginning->versions_before);
+    if (!noted && !fault) fault = noted.error();
+  }
+  beginning->journal_fault = std::move(fault);
+  journal->forget_content();
+  beginning->journal = std::make_unique<JournalThread>(*std::move(journal));
   return beginning;
 }
 
 }  // namespace
 
-Result<Beginning> begin_map(const Config& config) {
-  auto beginning = begin_plain(config);
-  if (!beginning || config.journal_file.empty()) return beginning;
-  const VoxelGrid grid = beginning->map.grid();
-  RawVoxels voxels{grid.geometry, grid.raw, grid.known};
-  std::optional<Error> fault;
-  auto journal =
-      open_journal(config, {grid.geometry.resolution_m, checksum_of(voxels)}, fault);
-  if (!journal) {
-    beginning->journal_fault = journal.error();
-    return beginning;
-  }
-  const JournalContent& content = journal->content();
-  const std::uint64_t version = content.version;
-  if (content.damaged > 0) {
-    fault = told(config, {ErrorCode::map_malformed,
-                          fmt::format("{} entries were damaged or cut off", content.damaged)},
-                 fmt::format("They are left out; {} bricks are whole", content.bricks.size()));
-  }
-  if (!content.bricks.empty()) {
-    auto with_journal = take_over(std::move(voxels), *journal, config, beginning->notes);
-    if (with_journal) {
-      beginning = std::move(with_journal);
-    } else {
-      fault = told(config, with_journal.error(), "The map begins as it was before the first scan");
-    }
-  }
-  beginning->versions_before = version > 0 ? version + kVersionsToSpare : 0;
-  beginning->journal_fault = std::move(fault);
-  journal->forget_content();
-  beginning->journal = std::make_unique<JournalThread>(*std::move(journal));
-  return beginning;
+Result<Beginning> begin_map(const Config& config, std::int64_t now_ns) {
+  auto source = read_file(config);
+  if (!source) return source.error();
+  if (config.journal_file.empty()) return begin_with(*source, config);
+  return begin_with_journal(*std::move(source), config, now_ns);
 }
 
 }  // namespace goshawk::map_server

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -21,8 +22,10 @@ struct Beginning {
   std::optional<Error> journal_fault{};      // of an old journal, or of making a new one
 };
 
+/// @param now_ns [ns since 1970] of the machine's clock. A map without a journal, or with one that is
+/// new, begins with version 1; any other at the clock's milliseconds or beyond the journal's versions
 /// @return as load_map(), LiveMap::from_source() and LiveMap::unknown_space(). A journal that is
 /// damaged or goes with another map is no failure: what is whole of it is used
-Result<Beginning> begin_map(const Config& config);
+Result<Beginning> begin_map(const Config& config, std::int64_t now_ns);
 
 }  // namespace goshawk::map_server

@@ -59,7 +59,11 @@ Result<std::array<const PointField*, 3>> places_of(const PointCloud2& m) {
     }
     if (field == nullptr || bytes_of(field->datatype()) == 0 || !fits(*field, m)) {
       return fail(ErrorCode::invalid_input,
-                  "the cloud has no float32 field '" + name + "' inside its points");
+                  fmt::format("the cloud {}: send x, y and z in metres as float32 or float64",
+                              field == nullptr ? fmt::format("has no field '{}'", name)
+                                               : fmt::format("has a field '{}' of an unknown type, "
+                                                             "or beyond its point_step of {} bytes",
+                                                             name, m.point_step())));
     }
     places[axis] = field;
   }

@@ -14,6 +14,7 @@
 #include "goshawk/map_server/frame_tree.hpp"
 #include "goshawk/map_server/live_map.hpp"
 #include "goshawk/map_server/placement.hpp"
+#include "goshawk/runtime/clock.hpp"
 #include "goshawk/runtime/component.hpp"
 #include "goshawk/stage/intake.hpp"
 #include "octomap_msgs.h"
@@ -34,7 +35,8 @@ constexpr std::size_t kMostWaiting = 8;  // clouds that wait for odometry
 constexpr double kWaitingPeriod_s = 0.05;
 
 Beginning begin(const Config& config, Node& node) {
-  auto beginning = begin_map(config);
+  // The machine's clock, also in simulated time, which begins anew.
+  auto beginning = begin_map(config, SystemClock().now_ns());
   if (!beginning) throw StartupFault(beginning.error());
   for (const std::string& note : beginning->notes) node.log().warn("{}: {}", config.map_file, note);
   return *std::move(beginning);
@@ -91,27 +93,34 @@ class MapServerComponent : public Component {
                                     : fmt::format("; {} bricks are from its journal",
                                                   beginning_.bricks)));
     if (beginning_.journal_fault) reporter_.fault(*beginning_.journal_fault);
+    tell_of_forgotten();
   }
 
  private:
   void publish_whole() {
     changed_ = false;
-    {
-      msg::VoxelGrid m;  // freed at once: the writer keeps the bytes for late joiners
-      m.header(conversions::make_header(node_.now_ns()));
-      VoxelGrid published = map_.grid();  // shares its bits
-      published.version += beginning_.versions_before;
-      if (!config_.publish_raw) published.raw = {};
-      conversions::fill_msg(published, m);
-      reporter_.send(voxels_, m);
-    }
-    const auto bytes = map_.octomap_payload();
+    const VoxelGrid grid = map_.grid();
+    publish_grid(grid);
+    publish_octomap(grid);
+  }
+
+  void publish_grid(VoxelGrid grid) {  // a copy shares its bits
+    grid.version += beginning_.versions_before;
+    if (!config_.publish_raw) grid.raw = {};
+    msg::VoxelGrid m;
+    m.header(conversions::make_header(node_.now_ns()));
+    conversions::fill_msg(grid, m);
+    reporter_.send(voxels_, m);
+  }
+
+  void publish_octomap(const VoxelGrid& grid) {
+    const auto bytes = binary_payload(grid.geometry, grid.raw, grid.known);
     if (!bytes) return reporter_.fault(bytes.error());
     octomap_msgs::msg::Octomap m;
     m.header(conversions::make_header(node_.now_ns()));
     m.binary(true);
     m.id("OcTree");
-    m.resolution(map_.geometry().resolution_m);
+    m.resolution(grid.geometry.resolution_m);
     m.data().assign(bytes->begin(), bytes->end());
     reporter_.send(octomap_, m);
   }
@@ -228,6 +237,7 @@ class MapServerComponent : public Component {
     if (auto status = map_.insert_scan(scan, result_); !status) {
       return reporter_.fault(status.error());
     }
+    tell_of_forgotten();
     placed_ns_ = time_span(cloud).last_ns;
     GridUpdate& update = result_.update;
     update.from_version += beginning_.versions_before;
@@ -237,6 +247,12 @@ class MapServerComponent : public Component {
     }
     publish_update(update);
     changed_ = true;
+  }
+
+  void tell_of_forgotten() {
+    if (forgetting_ || map_.bricks_forgotten() == 0) return;
+    forgetting_ = true;  // once: it goes on for the rest of the flight
+    reporter_.fault(forgotten_fault(config_));
   }
 
   void tell_of_journal() {
@@ -271,6 +287,7 @@ class MapServerComponent : public Component {
   std::int64_t placed_ns_ = 0;   // end of the scan before; 0: none
   ErrorCode odometry_code_ = ErrorCode::ok;
   bool changed_ = false;
+  bool forgetting_ = false;
 };
 
 }  // namespace

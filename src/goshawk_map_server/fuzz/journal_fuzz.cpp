@@ -23,10 +23,10 @@ std::vector<std::byte> good_journal() {
   JournalBrick brick;
   brick.raw[3] = 7;
   brick.known[3] = 0xFF;
-  put(entry_of(1, brick, 1));
+  put(entry_of(1, brick, 0, 2));
   brick.corner = {64, -8, 0};
-  put(entry_of(1, brick, 0));
-  put(entry_of(2, brick, 0));
+  put(entry_of(1, brick, 1, 2));
+  put(entry_of(2, brick, 0, 1));
   return bytes;
 }
 

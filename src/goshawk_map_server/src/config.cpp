@@ -1,5 +1,7 @@
 #include "goshawk/map_server/config.hpp"
 
+#include <fmt/format.h>
+
 namespace goshawk::map_server {
 namespace {
 
@@ -41,6 +43,15 @@ Result<LiveOptions> live_options(const Config& config) {
   options.max_kept_bytes = std::int64_t{config.max_kept_mb} * 1'000'000;
   options.max_voxels = config.max_voxels;
   return options;
+}
+
+Error forgotten_fault(const Config& config) {
+  const char* then = config.unknown == UnknownPolicy::free ? ", which this map takes for free" : "";
+  return fail(ErrorCode::map_too_large,
+              fmt::format("what left the window takes more than max_kept_mb ({} MB): what left "
+                          "first is forgotten from now on, obstacles too, and is unknown space "
+                          "when the window comes back{}. Raise max_kept_mb",
+                          config.max_kept_mb, then));
 }
 
 Pose sensor_mount(const Config& c) {

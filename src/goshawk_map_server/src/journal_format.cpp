@@ -13,18 +13,16 @@ constexpr int kFarthest = 1 << 26;  // [voxels] from the origin of the frame; be
 
 static_assert(std::endian::native == std::endian::little, "journals are little-endian");
 
-/// Collects entries until the last one of their batch is there.
+/// Collects the entries of a batch until all are there.
 class BatchReader {
  public:
   explicit BatchReader(JournalContent& content) : content_(content) {}
 
   void add(const JournalEntry& entry, std::size_t end) {
-    if (!batch_.empty() && (entry.version != batch_.back().version ||
-                            entry.more + 1 != batch_.back().more)) {
-      drop();
-    }
+    if (!follows(entry)) drop();
     batch_.push_back(entry);
-    if (entry.more > 0) return;
+    if (entry.number + 1 < entry.count) return;
+    if (batch_.size() != entry.count) return drop();
     for (const JournalEntry& e : batch_) {
       JournalBrick brick{{e.corner[0], e.corner[1], e.corner[2]}};
       std::ranges::copy(e.raw, brick.raw.begin());
@@ -43,6 +41,14 @@ class BatchReader {
   }
 
  private:
+  // A batch whose first entries are missing goes on, too: it is dropped at its end.
+  bool follows(const JournalEntry& entry) const {
+    if (batch_.empty()) return true;
+    const JournalEntry& last = batch_.back();
+    return entry.version == last.version && entry.count == last.count &&
+           entry.number == last.number + 1;
+  }
+
   JournalContent& content_;
   std::vector<JournalEntry> batch_;
 };
@@ -98,10 +104,12 @@ JournalHead head_of(const JournalIdentity& identity) {
   return head;
 }
 
-JournalEntry entry_of(std::uint64_t version, const JournalBrick& brick, std::size_t more) {
+JournalEntry entry_of(std::uint64_t version, const JournalBrick& brick, std::size_t number,
+                      std::size_t count) {
   JournalEntry entry{.version = version,
                      .corner = {brick.corner.x, brick.corner.y, brick.corner.z},
-                     .more = std::uint32_t(more)};
+                     .number = std::uint32_t(number),
+                     .count = std::uint32_t(count)};
   std::ranges::copy(brick.raw, entry.raw);
   std::ranges::copy(brick.known, entry.known);
   entry.checksum = checksum_of_block(entry);

@@ -109,11 +109,6 @@ VoxelGrid LiveMap::grid() const {
   return grid;
 }
 
-Result<std::string> LiveMap::octomap_payload() const {
-  const VoxelGrid all = grid();
-  return binary_payload(all.geometry, all.raw, all.known);
-}
-
 Status LiveMap::insert_scan(const Scan& scan, ScanResult& result) {
   LiveWindow& window = parts_->window;
   if (auto status = check_scan(scan, window.geometry()); !status) return status;

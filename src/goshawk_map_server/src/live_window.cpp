@@ -259,10 +259,13 @@ void LiveWindow::clear_voxel(Index3 v) {
 void LiveWindow::clear_body(std::span<const Vec3> path_map, double radius_m) {
   if (!(radius_m > 0.0)) return;
   const double radius = radius_m / resolution_m_;
+  const Index3 n = map_.size();
+  const Vec3 last(n.x - 1, n.y - 1, n.z - 1);
   for (const Vec3& p_map : path_map) {
     const Vec3 centre = to_voxels(p_map);
-    const Index3 low = voxel_of(centre - Vec3::Constant(radius));
-    const Index3 high = voxel_of(centre + Vec3::Constant(radius));
+    // Cut to the window first: a body may be larger than it.
+    const Index3 low = voxel_of((centre - Vec3::Constant(radius)).cwiseMax(Vec3::Zero()));
+    const Index3 high = voxel_of((centre + Vec3::Constant(radius)).cwiseMin(last));
     clear_voxel(voxel_of(centre));
     for (int z = low.z; z <= high.z; ++z) {
       for (int y = low.y; y <= high.y; ++y) {

@@ -14,7 +14,7 @@
 namespace goshawk::map_server {
 namespace {
 
-constexpr std::size_t kSmall = 16 << 20;  // [byte] a journal that is not worth being written anew
+constexpr auto kSmall = MapJournal::kSmall_bytes;
 constexpr std::size_t kObsolete = 4;      // times as long as what counts in it
 
 Error not_written(const std::string& path, int why) {
@@ -61,7 +61,8 @@ MapJournal::MapJournal(MapJournal&& other) noexcept
       file_(std::exchange(other.file_, -1)),
       content_(std::move(other.content_)),
       places_(std::move(other.places_)),
-      end_(other.end_) {}
+      end_(other.end_),
+      next_compaction_(other.next_compaction_) {}
 
 MapJournal::~MapJournal() {
   if (file_ >= 0) close(file_);
@@ -103,7 +104,7 @@ Status MapJournal::append(std::uint64_t version, std::span<const JournalBrick> b
   std::vector<JournalEntry> entries;
   entries.reserve(bricks.size());
   for (const JournalBrick& brick : bricks) {
-    entries.push_back(entry_of(version, brick, bricks.size() - entries.size() - 1));
+    entries.push_back(entry_of(version, brick, entries.size(), bricks.size()));
   }
   const int fault = write_all(file_, std::as_bytes(std::span(entries)), end_);
   if (fault != 0) {
@@ -115,7 +116,15 @@ Status MapJournal::append(std::uint64_t version, std::span<const JournalBrick> b
     places_[bricks[k].corner] = end_ + k * sizeof(JournalEntry);
   }
   end_ += entries.size() * sizeof(JournalEntry);
-  if (end_ < kSmall || end_ < kObsolete * places_.size() * sizeof(JournalEntry)) return success();
+  if (end_ < next_compaction_ || end_ < kObsolete * places_.size() * sizeof(JournalEntry)) {
+    return success();
+  }
+  // The batch is written: a journal that stays long is no failure.
+  if (!compact_file()) next_compaction_ = end_ + kSmall;
+  return success();
+}
+
+Status MapJournal::compact_file() {
   const auto bytes = read_all(file_, path_);
   if (!bytes) return bytes.error();
   auto content = read_journal(*bytes, identity_);
@@ -136,7 +145,7 @@ Status MapJournal::compact() {
   if (!bricks.empty()) {
     std::size_t at = anew->end_;
     for (std::size_t k = 0; k < bricks.size(); ++k, at += sizeof(JournalEntry)) {
-      const JournalEntry entry = entry_of(content_.version, bricks[k], bricks.size() - k - 1);
+      const JournalEntry entry = entry_of(content_.version, bricks[k], k, bricks.size());
       const int fault = write_all(anew->file_, std::as_bytes(std::span(&entry, 1)), at);
       if (fault != 0) {
         std::remove(beside.c_str());
@@ -154,6 +163,7 @@ Status MapJournal::compact() {
   std::swap(file_, anew->file_);
   places_ = std::move(anew->places_);
   end_ = anew->end_;
+  next_compaction_ = kSmall;
   return success();
 }
 

@@ -412,7 +412,8 @@ TEST(Cloud, AFlatOneTakesBitsAndNoTree) {
   EXPECT_EQ(voxels.geometry.size, (Index3{1201, 1201, 1}));
   EXPECT_EQ(voxels.known.count(), voxels.known.voxels());
   LiveMap map = LiveMap::from_source(*source, {}, {UnknownPolicy::free, 0.0}).value();
-  EXPECT_GT(map.octomap_payload().value().size(), 1000U);
+  const VoxelGrid grid = map.grid();
+  EXPECT_GT(binary_payload(grid.geometry, grid.raw, grid.known).value().size(), 1000U);
   const std::vector<Vec3> hit{Vec3(1, 1, 0)};
   EXPECT_TRUE(testing::insert(map, hit, Vec3(2, 2, 0), 10.0));
   EXPECT_LT(map.memory_bytes(), 50'000'000);

@@ -7,6 +7,10 @@
 namespace goshawk::map_server {
 namespace {
 
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
 // Checks a value against its rule, as the parameter reader does.
 struct Checker {
   std::set<std::string> names;
@@ -40,6 +44,17 @@ TEST(Config, InflationIsRadiusPlusMarginAndTheBoxIsOnlyUsedOnDemand) {
   ASSERT_TRUE(voxelize_options(config).box);
   EXPECT_EQ(voxelize_options(config).box->lower_map, Vec3(0, 0, -1));
   EXPECT_EQ(load_options(config).box->upper_map, Vec3(10, 10, 4));
+}
+
+TEST(Config, AFullMemoryForBricksIsToldWithWhatToDo) {
+  Config config;
+  config.max_kept_mb = 7;
+  EXPECT_EQ(forgotten_fault(config).code, ErrorCode::map_too_large);
+  EXPECT_THAT(forgotten_fault(config).message,
+              AllOf(HasSubstr("max_kept_mb (7 MB)"), HasSubstr("Raise max_kept_mb"),
+                    Not(HasSubstr("for free"))));
+  config.unknown = UnknownPolicy::free;
+  EXPECT_THAT(forgotten_fault(config).message, HasSubstr("this map takes for free"));
 }
 
 }  // namespace

@@ -197,6 +197,35 @@ TEST_F(Senses, AWindowThatFollowsForgetsNothingAndStaysSmall) {
   EXPECT_EQ(map.bricks_forgotten(), 0);
 }
 
+TEST_F(Senses, AWindowWithLittleMemoryForgetsWhatLeftFirstAndTellsHowMuch) {
+  LiveOptions options;
+  options.follows = true;
+  options.max_kept_bytes = 1'000;
+  LiveMap map = LiveMap::unknown_space(kRoom, 0.2, {UnknownPolicy::free, 0.0}, options).value();
+  const auto fly = [&](int step) {
+    const Vec3 at(0.1 + 0.2 * step, 0.1, 0.1);
+    see(map, {at + Vec3(1.0, 1.4, 0.0)}, at);
+  };
+  fly(0);
+  EXPECT_TRUE(occupied(map, Vec3(1.1, 1.5, 0.1)));
+  for (int step = 1; step < 1000; ++step) fly(step);
+  EXPECT_GT(map.bricks_forgotten(), 0);
+  EXPECT_GT(map.bricks_kept(), 0);
+  for (int step = 1000; step > 20; --step) fly(step);  // the place is in the window again
+  ASSERT_TRUE(map.geometry().index_of(Vec3(1.1, 1.5, 0.1)));
+  EXPECT_FALSE(known(map, Vec3(1.1, 1.5, 0.1)));
+}
+
+// Voxel by voxel, a body of this size would take for ever.
+TEST_F(Senses, ABodyThatIsLargerThanTheMapClearsTheMapAndNoMore) {
+  LiveMap map = make(1, 4);
+  see(map, {kNear}, kFrom);
+  see(map, {}, kFrom, 1e9);
+  const VoxelGrid grid = map.grid();
+  EXPECT_EQ(grid.known.count(), grid.known.voxels());
+  EXPECT_EQ(grid.raw.count(), 0);
+}
+
 TEST_F(Senses, UpdatesOfAWindowThatFollowsKeepASubscriberInStep) {
   Random random(6);
   for (const auto policy : {UnknownPolicy::occupied, UnknownPolicy::blocked, UnknownPolicy::free}) {

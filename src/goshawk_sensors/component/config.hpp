@@ -31,7 +31,7 @@ constexpr auto words_of(Fields) {
 enum class Missing {
   automatic,  // as the driver of this kind of sensor
   leave_out,  // no point
-  zero,       // a point at the sensor
+  zero,       // a point at the sensor; only in the sensor's frame
   nan,        // a point that is not a number
 };
 
@@ -101,8 +101,9 @@ void describe(Self& c, Visitor&& visit) {
         "of sensor)",
         Anything{});
   visit("missing", c.missing, "",
-        "what stands for a missing return in a cloud: leave_out, zero, nan, or automatic (as the "
-        "driver of this kind of sensor)",
+        "what stands for a missing return in a cloud: leave_out, zero (only with cloud_frame "
+        "sensor), nan, or automatic (as the driver of this kind of sensor; leave_out in other "
+        "frames)",
         Anything{});
   visit("image_encoding", c.image_encoding, "",
         "depth camera: 32FC1 (metres) or 16UC1 (millimetres)", Anything{});

@@ -1,5 +1,7 @@
 #include "messages.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -136,6 +138,16 @@ std::string optical_frame(const Config& config) {
   return config.frame + "_optical";
 }
 
+Status check_missing(const Config& config) {
+  if (config.missing != Missing::zero || config.cloud_frame == CloudFrame::sensor) return success();
+  const std::string_view frame = to_word(config.cloud_frame);
+  return fail(ErrorCode::invalid_parameter,
+              fmt::format("missing is zero and cloud_frame is {}: a missing return would be an "
+                          "obstacle at the origin of {}. Set missing to leave_out or nan, or "
+                          "cloud_frame to sensor",
+                          frame, frame));
+}
+
 CloudForm CloudForm::of(const Config& c) {
   const Pattern pattern = c.sensor.pattern.pattern;
   const bool camera = pattern == Pattern::depth_camera;
@@ -150,7 +162,8 @@ CloudForm CloudForm::of(const Config& c) {
   form.missing = c.missing;
   if (c.missing == Missing::automatic) {
     const bool all = form.fields == Fields::ouster || form.fields == Fields::livox;
-    form.missing = all ? Missing::zero : Missing::leave_out;
+    const bool at_sensor = c.cloud_frame == CloudFrame::sensor;
+    form.missing = all && at_sensor ? Missing::zero : Missing::leave_out;
   }
   form.frame = c.cloud_frame;
   form.optical = camera && c.cloud_frame == CloudFrame::sensor;

@@ -23,6 +23,10 @@ struct CloudForm {
   static CloudForm of(const Config& config);
 };
 
+/// @return invalid_parameter for missing returns as zeros in a frame whose origin is not the sensor:
+/// there a zero is an obstacle
+Status check_missing(const Config& config);
+
 /// Names of the frames that a sensor has.
 std::string optical_frame(const Config& config);
 

@@ -48,6 +48,7 @@ Sensor make_sensor(const Config& config) {
         fail(ErrorCode::invalid_parameter,
              "frame is '" + config.frame + "': a frame needs a name, without a leading slash"));
   }
+  if (auto status = check_missing(config); !status) throw StartupFault(status.error());
   return *std::move(sensor);
 }
 

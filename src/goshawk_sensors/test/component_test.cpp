@@ -201,6 +201,7 @@ TEST(SensorsComponent, UnusableParametersEndTheStartWithStatus2) {
                           "preset:=vlp17", "frame:=''", "missing_share:=2", "boundary:=wall"}) {
     EXPECT_EQ(Stage(call({bad})).status(kMost_s), 2) << bad;
   }
+  EXPECT_EQ(Stage(call({"cloud_frame:=map", "missing:=zero"})).status(kMost_s), 2);
 }
 
 }  // namespace

@@ -140,6 +140,45 @@ TEST(CloudMessage, MissingReturnsMayBeNotANumber) {
   EXPECT_TRUE(std::isnan(read<float>(m, "y", 1)));
 }
 
+// A zero means the sensor's own place only in the sensor's frame.
+TEST(CloudMessage, OutsideTheSensorsFrameMissingReturnsAreNoPointsAtTheOrigin) {
+  for (const Preset preset : {Preset::os0_128, Preset::mid360}) {
+    for (const CloudFrame frame : {CloudFrame::base_link, CloudFrame::map}) {
+      Config c = config_of(preset);
+      c.cloud_frame = frame;
+      const Scan scan = three_returns();
+      PoseTrack track;
+      for (int i = 0; i <= 10; ++i) {
+        Pose pose;
+        pose.position_map = Vec3(7.0, 7.0, 7.0);
+        ASSERT_TRUE(track.add(scan.start_ns + 10'000'000LL * i, pose));
+      }
+      CloudForm form = CloudForm::of(c);
+      form.channels = preset == Preset::os0_128 ? 3 : 1;
+      const auto m = cloud_of(scan, form, track);
+      EXPECT_EQ(m.width() * m.height(), 2U);
+      for (std::size_t i = 0; i < m.width(); ++i) {
+        EXPECT_FALSE(read<float>(m, "x", i) == 0.0F && read<float>(m, "y", i) == 0.0F &&
+                     read<float>(m, "z", i) == 0.0F);
+      }
+    }
+  }
+}
+
+TEST(CloudMessage, ZerosForMissingReturnsAreRefusedOutsideTheSensorsFrame) {
+  Config c = config_of(Preset::mid360);
+  c.missing = Missing::zero;
+  EXPECT_TRUE(check_missing(c));
+  for (const CloudFrame frame : {CloudFrame::base_link, CloudFrame::map}) {
+    c.cloud_frame = frame;
+    const Status status = check_missing(c);
+    ASSERT_EQ(status.code(), ErrorCode::invalid_parameter);
+    EXPECT_NE(status.error().message.find("Set missing to leave_out or nan"), std::string::npos);
+  }
+  c.missing = Missing::nan;
+  EXPECT_TRUE(check_missing(c));
+}
+
 TEST(CloudMessage, InBaseLinkThePointsAreMovedByTheMount) {
   Config c = config_of(Preset::vlp16);
   c.cloud_frame = CloudFrame::base_link;

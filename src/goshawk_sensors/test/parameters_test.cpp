@@ -82,6 +82,8 @@ TEST(Parameters, EachUnusableValueIsRefusedWithItsName) {
   expect_refused(with([](auto& s) { s.pattern.channels = 0; }), "channels is 0");
   expect_refused(with([](auto& s) { s.pattern.columns = 0; }), "columns is 0");
   expect_refused(with([](auto& s) { s.pattern.rate_hz = 0.0; }), "rate_hz is 0");
+  // The points of a scan that lasts longer than 1 s are too old for a map.
+  expect_refused(with([](auto& s) { s.pattern.rate_hz = 0.9; }), "rate_hz is 0.9");
   expect_refused(with([&](auto& s) { s.pattern.rate_hz = nan; }), "rate_hz is nan");
   expect_refused(with([](auto& s) { s.pattern.azimuth_width_rad = 0.0; }),
                  "azimuth_width_rad is 0");

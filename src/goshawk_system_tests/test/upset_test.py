@@ -31,7 +31,7 @@ class UpsetFlight(LegsCase):
         folder.mkdir()
         cls.controls = {stage: fault_control.FaultControl(folder, stage) for stage in STAGES}
         cls.draw = random.Random(12)
-        return fault_control.environment(PREFIX, folder)
+        return fault_control.environment(fault_control.shim_of(PREFIX), folder)
 
     def upset(self, act, *codes):
         """Flies a leg with act() in it. @param codes of which the stages must say one"""

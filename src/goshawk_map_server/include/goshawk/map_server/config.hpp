@@ -106,7 +106,9 @@ void describe_window(Self& c, Visitor& visit) {
         "comes back with it",
         Anything{});
   visit("max_kept_mb", c.max_kept_mb, "MB",
-        "memory for what left the box; beyond it, what left first is forgotten", Range{1.0, 1e6});
+        "memory for what left the box; beyond it, what left first is forgotten, and becomes unknown "
+        "space; a report says so",
+        Range{1.0, 1e6});
 }
 
 template <typename Self, typename Visitor>
@@ -121,7 +123,7 @@ void describe_beliefs(Self& c, Visitor& visit) {
   visit("body_radius_m", c.body_radius_m, "m",
         "points of a scan nearer than this to the vehicle's centre are the vehicle itself, and the "
         "space it flew through is free; 0: neither",
-        Range{0.0, 100.0});
+        Range{0.0, 5.0});
 }
 
 template <typename Self, typename Visitor>
@@ -178,6 +180,8 @@ LoadOptions load_options(const Config& config);
 VoxelizeOptions voxelize_options(const Config& config);
 Growth growth(const Config& config);
 Result<LiveOptions> live_options(const Config& config);
+/// That bricks which left the window had to be forgotten: map_too_large.
+Error forgotten_fault(const Config& config);
 /// sensor_frame in base_link
 Pose sensor_mount(const Config& config);
 

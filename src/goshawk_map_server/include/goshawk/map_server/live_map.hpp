@@ -4,7 +4,6 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <string>
 
 #include "goshawk/core/brick_map.hpp"
 #include "goshawk/map_server/map_file.hpp"
@@ -20,7 +19,7 @@ struct LiveOptions {
   /// The window moves with the vehicle; its size is rounded up to whole bricks. What leaves it is
   /// kept, and comes back with it.
   bool follows = false;
-  std::int64_t max_kept_bytes = 1'000'000'000;  // of what left; then the oldest is forgotten
+  std::int64_t max_kept_bytes = 1'000'000'000;  // of what left; then the oldest is forgotten: unknown
   std::int64_t max_voxels = 1'000'000'000;      // of the window
 };
 
@@ -64,9 +63,6 @@ class LiveMap {
   std::uint64_t version() const;
   /// The window as a dense grid with raw voxels; its bits are its own.
   VoxelGrid grid() const;
-  /// What octomap_msgs/Octomap carries of the window (binary); empty if nothing is known.
-  /// @return map_too_large beyond OctoMap's reach
-  Result<std::string> octomap_payload() const;
 
   /// Moves the window if it follows, inserts a scan, and grows anew around what changed. The
   /// version rises by one, even if no brick changed. Allocates nothing once the bricks are known

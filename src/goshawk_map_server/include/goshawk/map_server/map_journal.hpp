@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <map>
 #include <span>
 #include <string>
@@ -44,7 +43,7 @@ struct JournalOrder {
 struct JournalContent {
   std::uint64_t version = 0;  // of the newest batch that is whole; 0: none
   std::map<Index3, JournalBrick, JournalOrder> bricks;  // the newest of each, by corner
-  std::int64_t damaged = 0;                             // entries that were changed or cut off
+  std::int64_t damaged = 0;  // entries that were changed or cut off, and all others of their batches
   std::size_t whole_bytes = 0;                          // a new batch follows here
 
   /// Writes the bricks into a map that covers them; those beyond it are left out.
@@ -64,13 +63,17 @@ Result<JournalContent> read_journal(std::span<const std::byte> bytes,
 std::vector<JournalBrick> journal_bricks(const GridUpdate& update, const GridGeometry& geometry);
 
 /// A file with what a live map has learnt, so that a server that was killed goes on with the map
-/// that it had. Batches are appended; each entry has a checksum, a batch counts when its last entry
-/// is there. When most entries are obsolete, the file is written anew beside the old one.
+/// that it had. Batches are appended; each entry has a checksum, a batch counts when all its entries
+/// are whole. When most entries are obsolete, the file is written anew beside the old one; if that
+/// fails, it is tried again when the file has grown.
 ///
 /// Written without waiting for the disk: what a process has written outlives its death, not that of
 /// the machine.
 class MapJournal {
  public:
+  /// A journal up to this is not worth being written anew.
+  static constexpr std::size_t kSmall_bytes = 16 << 20;
+
   /// Opens a file, or makes one. @return io_failed; map_malformed or invalid_input as
   /// read_journal(), then the file is as before
   static Result<MapJournal> open(const std::string& path, const JournalIdentity& identity);
@@ -94,6 +97,7 @@ class MapJournal {
 
   MapJournal(std::string path, const JournalIdentity& identity, int file);
   Status compact();
+  Status compact_file();
 
   std::string path_;
   JournalIdentity identity_;
@@ -101,6 +105,7 @@ class MapJournal {
   JournalContent content_;
   Places places_;         // of the newest entry of each brick
   std::size_t end_ = 0;   // [byte] of the file
+  std::size_t next_compaction_ = kSmall_bytes;  // [byte] not before
 };
 
 }  // namespace goshawk::map_server

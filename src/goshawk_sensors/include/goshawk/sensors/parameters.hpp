@@ -80,7 +80,7 @@ void describe(Self& p, Visitor&& visit) {
   visit("pattern", p.pattern, "",
         "where rays go: spinning (rows of lasers), mid360 and avia (non-repeating), depth_camera",
         Anything{});
-  visit("rate_hz", p.rate_hz, "Hz", "scans or images a second", Range{0.1, 1000.0});
+  visit("rate_hz", p.rate_hz, "Hz", "scans or images a second", Range{1.0, 1000.0});
   visit("channels", p.channels, "", "spinning: rows of lasers", Range{1.0, 1024.0});
   visit("columns", p.columns, "", "spinning: firings of all channels in a scan",
         Range{1.0, 65536.0});
