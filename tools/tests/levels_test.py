@@ -49,6 +49,12 @@ def includes(package):
     return found - {package}
 
 
+def components():
+    """{component: the package that has it}"""
+    return {name: short(path.parent.name) for path in ROOT.glob("src/*/CMakeLists.txt")
+            for name in re.findall(r"goshawk_component\(NAME ([a-z_]+)", path.read_text())}
+
+
 class LevelsTest(unittest.TestCase):
     def setUp(self):
         self.levels = levels((ROOT / "docs/architecture.md").read_text())
@@ -78,6 +84,14 @@ class LevelsTest(unittest.TestCase):
         for package in self.graph:
             undeclared = (includes(package) & set(self.graph)) - self.reachable(package)
             self.assertEqual(undeclared, set(), package)
+
+    def test_every_component_of_a_launch_file_is_a_declared_dependency(self):
+        owners = components()
+        for path in ROOT.glob("src/goshawk_*/launch/*.yaml"):
+            package = short(path.parts[-3])
+            used = set(re.findall(r"component: *([a-z_]+)", path.read_text()))
+            needed = {owners[component] for component in used} - {package}
+            self.assertEqual(needed - self.reachable(package), set(), path)
 
     def test_an_arrow_that_points_up_is_found(self):
         self.graph["core"] = {"cli"}

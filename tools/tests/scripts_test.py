@@ -99,7 +99,7 @@ class ScriptsTest(unittest.TestCase):
         env = self.fake_debian(self.all_installed(), user=1000)
         result = run(TOOLS / "setup", "--tests", env=env)
         self.assertEqual(result.returncode, 1)
-        self.assertIn("apt-get install chromium nodejs npm", result.stderr)
+        self.assertIn("apt-get install chromium iproute2 nodejs npm", result.stderr)
 
     def test_setup_installs_slurm_only_if_it_is_asked_to(self):
         env = self.fake_debian(self.all_installed(), user=1000)
@@ -108,8 +108,26 @@ class ScriptsTest(unittest.TestCase):
         self.assertEqual(result.returncode, 1)
         self.assertIn("apt-get install munge slurm-client slurmctld slurmd", result.stderr)
 
+    def test_options_of_setup_are_combined_in_any_order(self):
+        env = self.fake_debian(self.all_installed(), user=0)
+        for options in (("--slurm", "--tests", "--check"), ("--check", "--tests", "--slurm")):
+            result = run(TOOLS / "setup", *options, env=env)
+            self.assertEqual(result.returncode, 1)
+            self.assertIn("not installed: chromium iproute2 munge nodejs npm slurm-client slurmctld "
+                          "slurmd", result.stderr)
+            self.assertEqual(self.calls(), [])
+        self.assertIn("munge", run(TOOLS / "setup", "--list", "--slurm").stdout.split())
+
+    def test_setup_refuses_what_it_does_not_know_before_it_does_anything(self):
+        result = run(TOOLS / "setup", "--slrum", "--check",
+                     env=self.fake_debian(self.all_installed(), user=0))
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("unknown argument '--slrum'", result.stderr)
+        self.assertEqual(self.calls(), [])
+
     def test_setup_for_tests_does_without_npm(self):
-        installed = self.all_installed() + "ii chromium\\nii nodejs\\nii npm\\n"
+        installed = (self.all_installed() +
+                     "ii chromium\\nii iproute2\\nii nodejs\\nii npm\\n")
         result = run(TOOLS / "setup", "--tests", env=self.fake_debian(installed, user=1000))
         self.assertEqual((result.returncode, result.stderr), (0, ""))  # its tests are skipped
         self.assertEqual(self.calls(), [])

@@ -40,8 +40,8 @@ class Fault:
 
     instant = False  # over as soon as it has begun
 
-    def __init__(self, draw, targets):
-        self.targets = targets
+    def __init__(self, draw):
+        self.targets = []  # names of processes
         self.duration_s = 0.0
         self.after_s = draw.uniform(0.3, 4.0)  # since the end of the one before
         self.choose(draw)
@@ -196,5 +196,5 @@ def drawn(kinds, seed):
     k = 0
     while True:
         draw = random.Random(f"{seed}/fault {k}")
-        yield CLASSES[draw.choice(kinds)](draw, [])
+        yield CLASSES[draw.choice(kinds)](draw)
         k += 1

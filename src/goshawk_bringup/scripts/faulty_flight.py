@@ -3,13 +3,13 @@
 import json
 import os
 import pathlib
-import re
 import signal
 import subprocess
 import time
 
 import fault_control
 import faults
+import supervision
 
 STEP_S = 0.01
 MOST_FOR_A_GOAL = 3  # then the flight may show that it recovers
@@ -78,7 +78,7 @@ class FaultyFlight:
             text = (self.folder / "logs/supervisord.log").read_text(errors="replace")
         except OSError:
             return {}
-        return {n: int(p) for n, p in re.findall(r"spawned: '([^']+)' with pid (\d+)", text)}
+        return supervision.spawned(text)
 
     def signal(self, targets, number):
         pids = self.pids()

@@ -4,6 +4,7 @@ import difflib
 import os
 import re
 import shutil
+import xml.etree.ElementTree as ElementTree
 
 import yaml
 
@@ -221,6 +222,11 @@ class Plan:
             raise WrongCall(f"{self.secure} has no certificate for {program.role}: make the folder "
                             f"with goshawk secure init, and --like {program.role}=ROLE for a "
                             "program of your own")
+        if self.host and is_loopback_only(profile):
+            raise WrongCall(
+                f"{profile} is for loopback, so that {self.host} and the other hosts would never meet: "
+                "put this host's address in place of 127.0.0.1, and add the other hosts' to its "
+                "initialPeersList, in each profile.xml")
         program.command = ["/usr/bin/env", f"FASTRTPS_DEFAULT_PROFILES_FILE={profile}",
                            *program.command]
         return program
@@ -258,6 +264,16 @@ class Plan:
         if os.path.isdir(path) or not os.access(path, os.X_OK):
             raise WrongCall(f"{place}: {path} cannot be executed")
         return path
+
+
+def is_loopback_only(profile):
+    """Whether a participant with this profile of Fast DDS speaks with this host alone."""
+    try:
+        root = ElementTree.parse(profile).getroot()
+    except (OSError, ElementTree.ParseError) as error:
+        raise WrongCall(f"{profile} is not a profile of Fast DDS: {error}") from error
+    addresses = [a.text.strip() for a in root.iterfind(".//{*}interfaceWhiteList/{*}address") if a.text]
+    return bool(addresses) and all(a.startswith("127.") for a in addresses)
 
 
 def realtime_is_permitted():

@@ -8,15 +8,15 @@ import datetime
 import json
 import os
 import pathlib
-import re
 import subprocess
 import sys
+import tempfile
 
 import secure_files
 import topic_rights
+from launch_file import NAME
 
 DONE, NOT_DONE, WRONG_CALL = 0, 1, 2
-NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]*")
 
 
 class Failure(Exception):
@@ -40,23 +40,28 @@ def openssl(*arguments):
         raise Failure("io_failed", f"openssl {arguments[0]} failed: {done.stderr.strip()}", NOT_DONE)
 
 
+def asn1_time(moment):
+    return moment.strftime("%Y%m%d%H%M%SZ")
+
+
 def make_key(path):
     openssl("ecparam", "-name", "prime256v1", "-genkey", "-noout", "-out", path)
     path.chmod(0o600)
 
 
 class Authority:
-    """Signs certificates and documents. Its key makes members of the domain."""
+    """Signs certificates and documents. Its key makes members of the domain.
 
-    def __init__(self, folder, days):
-        self.folder, self.days = folder, days
+    @param begin, end when all of them are valid, UTC"""
+
+    def __init__(self, folder, begin, end):
+        self.folder, self.begin, self.end = folder, begin, end
         self.certificate, self.key = folder / "ca.pem", folder / "ca_key.pem"
 
     def found(self):
         self.folder.mkdir(mode=0o700)
         make_key(self.key)
-        openssl("req", "-x509", "-new", "-key", self.key, "-sha256", "-days", self.days, "-subj",
-                "/O=Goshawk/CN=authority", "-out", self.certificate)
+        self.issue("authority", self.key, self.certificate, "-selfsign", "-extensions", "authority")
         self.sign(secure_files.governance(), self.folder / "governance.smime")
 
     def sign(self, text, path):
@@ -67,13 +72,18 @@ class Authority:
 
     def certify(self, name, folder):
         make_key(folder / "key.pem")
-        request = folder / "certificate.req"
-        openssl("req", "-new", "-key", folder / "key.pem", "-subj", f"/O=Goshawk/CN={name}", "-out",
-                request)
-        openssl("x509", "-req", "-in", request, "-CA", self.certificate, "-CAkey", self.key,
-                "-CAcreateserial", "-days", self.days, "-sha256", "-out",
-                folder / "certificate.pem")
-        request.unlink()
+        self.issue(name, folder / "key.pem", folder / "certificate.pem", "-cert", self.certificate)
+
+    def issue(self, name, key, certificate, *options):
+        """Of openssl's commands only `ca` lets a certificate begin before now, and it needs files."""
+        with tempfile.TemporaryDirectory(dir=self.folder) as work:
+            request, configuration = (pathlib.Path(work) / f for f in ("request", "configuration"))
+            (pathlib.Path(work) / "database").touch()
+            configuration.write_text(secure_files.authority_configuration(work), encoding="utf-8")
+            openssl("req", "-new", "-key", key, "-subj", f"/O=Goshawk/CN={name}", "-out", request)
+            openssl("ca", "-batch", "-notext", "-config", configuration, "-in", request,
+                    "-keyfile", self.key, "-startdate", asn1_time(self.begin), "-enddate",
+                    asn1_time(self.end), "-out", certificate, *options)
 
 
 def members(like):
@@ -92,17 +102,18 @@ def init(options):
     folder = pathlib.Path(options["folder"]).absolute()
     namespace = "/" + options["namespace"].strip("/")
     if "//" in namespace or not all(NAME.fullmatch(p) for p in namespace.split("/") if p):
-        raise wrong(f"namespace '{options['namespace']}' is not one of letters, digits and '_'")
+        raise wrong(f"namespace '{options['namespace']}' is not one of letters, digits, '_', '.' and "
+                    "'-'")
     table = members(options["like"])
     if folder.exists() and any(folder.iterdir()):
         raise wrong(f"{folder} is not empty: keys are never overwritten; name another folder, or "
                     "remove this one")
     folder.mkdir(parents=True, exist_ok=True)
-    authority = Authority(folder / "authority", options["days"])
-    authority.found()
     now = datetime.datetime.now(datetime.timezone.utc).replace(microsecond=0, tzinfo=None)
     begin = now - datetime.timedelta(days=1)  # the clocks of other machines may be behind
     end = now + datetime.timedelta(days=options["days"])
+    authority = Authority(folder / "authority", begin, end)
+    authority.found()
     for name, (reads, writes) in table.items():
         own = folder / name
         own.mkdir(mode=0o700)

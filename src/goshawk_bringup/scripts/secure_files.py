@@ -36,6 +36,27 @@ def governance():
 """
 
 
+def authority_configuration(folder):
+    """For `openssl ca`, with its database in a folder of its own."""
+    return f"""[ca]
+default_ca = own
+[own]
+database = {folder}/database
+new_certs_dir = {folder}
+default_md = sha256
+unique_subject = no
+rand_serial = yes
+policy = names
+[names]
+organizationName = supplied
+commonName = supplied
+[authority]
+subjectKeyIdentifier = hash
+authorityKeyIdentifier = keyid:always
+basicConstraints = critical, CA:true
+"""
+
+
 def topics(tag, names, namespace):
     if not names:
         return ""

@@ -20,6 +20,12 @@ EXITED = re.compile(r" (?:INFO|WARN) exited: (?P<name>\S+) \((?P<how>.+?)(?:; (?
 FAULT = re.compile(r" INFO spawnerr: (?P<how>.*)$")
 
 
+def spawned(log):
+    """{program: its newest process}, from the text of supervisord's log."""
+    found = (SPAWNED.search(line) for line in log.splitlines())
+    return {match["name"]: int(match["pid"]) for match in found if match}
+
+
 def configuration(programs):
     """No text of a user's stands in it: commands come by the environment, as supervisord replaces
     %(ENV_X)s only after it has read the file, and logs are beside it."""

@@ -10,7 +10,8 @@ ALL = ["/*"]
 
 # name: what it reads and writes besides EVERY_NODE (stages also write stage_report)
 STAGES = {
-    "map_server": {"reads": ["cloud_in", "odom", "/tf", "/tf_static"],
+    # Its cloud_in is remapped to points if Goshawk's own sensors make them (launch file live).
+    "map_server": {"reads": ["cloud_in", "points", "odom", "/tf", "/tf_static"],
                    "writes": [*MAP, "octomap_binary"]},
     "path_search": {"reads": [*MAP, "plan_request"], "writes": ["path"]},
     "corridor_builder": {"reads": [*MAP, "plan_request", "path"], "writes": ["corridor"]},
@@ -27,8 +28,7 @@ STAGES = {
     "flight_check": {"reads": ["octomap_binary", "committed_trajectory", "odom", "odom_true",
                                "vehicle_status"], "writes": []},
     "sensors": {"reads": ["odom", "odom_true"],
-                "writes": ["points", "cloud_in", "depth/image_rect_raw", "depth/camera_info",
-                           "/tf_static"]},
+                "writes": ["points", "depth/image_rect_raw", "depth/camera_info", "/tf_static"]},
     "visualizer": {"reads": ["octomap_binary", "path", "committed_trajectory", "odom"],
                    "writes": ["view/obstacles", "view/plan", "view/flown", "path_line", "markers"]},
 }

@@ -87,13 +87,13 @@ while True:
 
 
 class Shim(Folder):
-    def start(self, program, stage="tracker", controlled=True):
+    def start(self, program, stage="tracker", controlled=True, **more):
         control = fault_control.FaultControl(self.folder, "tracker", seed=7) if controlled else None
         process = subprocess.Popen(
             [sys.executable, "-c", program], text=True, stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             env={**os.environ, **fault_control.environment(SHIM, self.folder),
-                 "SUPERVISOR_PROCESS_NAME": stage})
+                 "SUPERVISOR_PROCESS_NAME": stage, **more})
         self.addCleanup(process.stdout.close)
         self.addCleanup(process.stdin.close)
         self.addCleanup(process.wait)
@@ -117,6 +117,16 @@ class Shim(Folder):
             # By the kernel's clock the deadline would be over, or 100 s ahead.
             self.assertGreater(waited_s, 0.49)
             self.assertLess(waited_s, 60.0)
+
+    def test_a_wall_clock_may_be_wrong_from_the_start_and_be_stepped_as_well(self):
+        for controlled, step_s in ((False, 0.0), (True, 200.0)):
+            control, process, _ = self.start(SAY_TIME, controlled=controlled,
+                                             GOSHAWK_LAB_CLOCK_S="-1000")
+            if controlled:
+                control.step_clock(step_s)
+            ahead_s, waited_s = self.ask(process)
+            self.assertAlmostEqual(ahead_s, -1000.0 + step_s, delta=20.0)
+            self.assertTrue(0.49 < waited_s < 60.0, waited_s)
 
     def test_who_is_not_a_stage_keeps_its_clock(self):
         control, process, _ = self.start(SAY_TIME, stage="supervisord")

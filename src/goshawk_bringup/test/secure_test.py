@@ -1,9 +1,11 @@
 """Tests of `goshawk secure init`, without a stack: what it makes holds for openssl."""
 
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 import xml.etree.ElementTree as ElementTree
 
@@ -64,6 +66,13 @@ class Made(unittest.TestCase):
             self.assertEqual((own / "key.pem").stat().st_mode & 0o077, 0)
         self.assertEqual(len(keys), len(topic_rights.roles()) + 1)
 
+    def test_a_host_whose_clock_is_behind_accepts_the_certificates(self):
+        hour_ago = int(time.time()) - 3600
+        for name in ("tracker", "operator"):
+            done = openssl("verify", "-attime", hour_ago, "-CAfile",
+                           self.folder / "authority" / "ca.pem", self.folder / name / "certificate.pem")
+            self.assertEqual(done.returncode, 0, done.stderr)
+
     def test_rights_are_the_least(self):
         reads, writes = self.rights("tracker")
         self.assertIn("rt/uav1/committed_trajectory", reads)
@@ -78,6 +87,24 @@ class Made(unittest.TestCase):
                 writers.setdefault(topic, []).append(name)
         several = {t for t, names in writers.items() if len(names) > 1}
         self.assertEqual(several, {"rt/uav1/stage_report", "rt/parameter_answer"})
+
+    def test_a_remapped_topic_is_one_that_the_stage_has_a_right_to(self):
+        table, remapped = topic_rights.roles(), 0
+        for path in sorted((SCRIPTS.parent / "launch").glob("*.yaml")):
+            for stage in launch_file.read(path)["stages"]:
+                role = topic_rights.role_of(stage.get("component", ""))
+                for source, target in stage.get("remap", {}).items():
+                    for right in table[role]:
+                        self.assertEqual(source in right, target in right,
+                                         f"{path.name}: {role} {source} -> {target}")
+                    remapped += 1
+        self.assertGreater(remapped, 0)
+
+    def test_sensors_write_what_their_component_advertises_and_no_more(self):
+        source = (SCRIPTS.parents[1] / "goshawk_sensors/component/sensors_component.cpp").read_text()
+        advertised = set(re.findall(r'advertise<[^"]*>\("([^"]+)"', source))
+        self.assertIn("points", advertised)
+        self.assertEqual(set(topic_rights.STAGES["sensors"]["writes"]), advertised)
 
     def test_governance_admits_nobody_without_a_certificate(self):
         rule = self.document(self.folder / "authority" / "governance.smime").find(
@@ -99,10 +126,10 @@ class Made(unittest.TestCase):
                 self.assertIn(words, str(refused.exception))
         self.assertFalse((self.folder / "a").exists())
 
-    def programs(self, text):
+    def programs(self, text, host=""):
         path = pathlib.Path(self.temporary.name) / "test.yaml"
         path.write_text(text)
-        plan = launch_file.Plan(launch_file.read(path), path, "/prefix", ())
+        plan = launch_file.Plan(launch_file.read(path), path, "/prefix", (), host)
         plan.secure = str(self.folder)
         return {p.name: p.command for p in plan.programs()}
 
@@ -116,6 +143,20 @@ class Made(unittest.TestCase):
             self.programs("stages: [{command: [ls]}]")
         with self.assertRaisesRegex(WrongCall, "container: false"):
             self.programs("container: true\nstages: [{component: tracker}]")
+
+    def test_a_host_among_several_needs_profiles_that_are_not_for_loopback_alone(self):
+        text = ("hosts: {vehicle: 10.0.0.2, ground: }\nstages:\n"
+                "  - {component: tracker, host: vehicle}\n  - {component: map_server, host: ground}\n")
+        with self.assertRaisesRegex(WrongCall, "tracker/profile.xml is for loopback"):
+            self.programs(text, "vehicle")
+        profile = self.folder / "map_server" / "profile.xml"
+        before = profile.read_text()
+        self.addCleanup(profile.write_text, before)
+        profile.write_text(before.replace("127.0.0.1", "10.0.0.3"))
+        self.assertEqual(list(self.programs(text, "ground")), ["map_server"])
+        profile.write_text("no profile")
+        with self.assertRaisesRegex(WrongCall, "not a profile"):
+            self.programs(text, "ground")
 
 
 if __name__ == "__main__":

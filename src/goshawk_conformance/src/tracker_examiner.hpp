@@ -39,6 +39,7 @@ class TrackerExaminer {
   void send_odometry();
   void take(const goshawk_msgs::msg::AttitudeSetpoint& m, std::int64_t received_ns);
   void send_map(bool blocked_above);
+  void settle_map();
   void weigh();
   /// @return [ns] when it begins
   std::int64_t commit(Committed committed, double begins_in_s);

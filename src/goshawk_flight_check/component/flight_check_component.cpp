@@ -2,7 +2,10 @@
 
 #include <cmath>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "goshawk/conversions/plan.hpp"
 #include "goshawk/conversions/vehicle.hpp"
@@ -93,7 +96,7 @@ class FlightCheckComponent : public Component {
     node.every(config_.period_s, [this] {
       read_map();
       watch_.tick(seconds(node_.now_ns()));
-      tell({});
+      tell(watch_.take_findings(), {});
     });
     reporter_.ready(fmt::format("judges a body of reach {:.3g} m", config_.body.reach_m()));
   }
@@ -116,14 +119,15 @@ class FlightCheckComponent : public Component {
 
   void on_commit(const msg::CommittedTrajectory& m, const MessageInfo& info) {
     read_map();
-    const auto begin = std::chrono::steady_clock::now();
-    if (auto plan = plan_of(m)) {
-      watch_.commit(*std::move(plan));
-    } else {
-      watch_.commit_unjudged(m.nominal().request().id(), plan.error());
-    }
-    const std::chrono::nanoseconds took = std::chrono::steady_clock::now() - begin;
-    tell({.wire_ns = wire_time_ns(m.header(), info), .compute_ns = took.count()});
+    const auto [findings, compute_ns] = timed([&] {
+      if (auto plan = plan_of(m)) {
+        watch_.commit(*std::move(plan));
+      } else {
+        watch_.commit_unjudged(m.nominal().request().id(), plan.error());
+      }
+      return watch_.take_findings();
+    });
+    tell(findings, {.wire_ns = wire_time_ns(m.header(), info), .compute_ns = compute_ns});
   }
 
   void on_odometry(const Odometry& m) {
@@ -139,8 +143,8 @@ class FlightCheckComponent : public Component {
   }
 
   /// @param timing of the verdict on a plan
-  void tell(const Timing& timing) {
-    for (const auto& finding : watch_.take_findings()) {
+  void tell(const std::vector<Finding>& findings, const Timing& timing) {
+    for (const auto& finding : findings) {
       switch (finding.kind) {
         case Finding::Kind::planned:
           report(finding, "planned", timing);

@@ -52,6 +52,7 @@ void Watch::set_map(FlightCheck check) {
 }
 
 void Watch::commit(Plan plan) {
+  judge_flown();
   finish_leg();
   newest_id_ = plan.request_id;
   leg_ = Leg{.id = plan.request_id, .end_s = end_s(plan), .flown = {}};
@@ -69,6 +70,7 @@ void Watch::commit(Plan plan) {
 }
 
 void Watch::commit_unjudged(std::uint64_t request_id, const Error& why) {
+  judge_flown();
   finish_leg();
   newest_id_ = request_id;
   leg_.reset();

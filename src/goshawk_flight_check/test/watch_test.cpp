@@ -176,6 +176,36 @@ TEST_F(WatchTest, TellsWhatWasFlownOfAPlanThatIsSuperseded) {
   EXPECT_EQ(findings[1].request_id, 8U);
 }
 
+TEST_F(WatchTest, CountsWhatWasFlownSinceTheLastTickToThePlanBefore) {
+  for (const bool judged : {true, false}) {
+    SCOPED_TRACE(judged);
+    watch = {};
+    watch.set_map(wall_at(20));
+    watch.commit(plan(7, 100.0, 0.0, 1.5));
+    for (const Sample& s : straight(0.0, 1.5)) {  // no tick comes
+      watch.fly({{100.0 + s.t_s, s.position_map, s.q_map_base}, kSpeed_m_s});
+    }
+    found();
+    if (judged) {
+      watch.commit(plan(8, 101.5, 1.5, 0.5));
+    } else {
+      watch.commit_unjudged(8, fail(ErrorCode::invalid_input, "no piece"));
+    }
+    auto findings = found();
+    ASSERT_EQ(findings.size(), 2U);
+    EXPECT_EQ(findings[0].kind, Kind::flown);
+    EXPECT_EQ(findings[0].request_id, 7U);
+    EXPECT_NEAR(findings[0].outcome->clearance_m, 0.35, 1.1e-3);
+    if (!judged) continue;
+    fly(101.51, 1.5, 0.5);
+    hover(102.52, 0.5, 1.2);
+    findings = found();
+    ASSERT_EQ(findings.size(), 1U);
+    EXPECT_EQ(findings[0].request_id, 8U);
+    EXPECT_NEAR(findings[0].outcome->clearance_m, 0.35, 1.1e-3);
+  }
+}
+
 TEST_F(WatchTest, TellsAContactOnceAndTheNextOneAgain) {
   watch.set_map(wall_at(20));
   fly(100.0, 0.0, 2.0);

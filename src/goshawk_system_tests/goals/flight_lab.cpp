@@ -3,47 +3,15 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "goshawk/core/inflation.hpp"
-#include "goshawk/worlds/world.hpp"
+#include "growing_world.hpp"
 
 namespace goshawk::goals {
 namespace {
 
 constexpr std::int64_t kMillisecond = 1'000'000;
-constexpr double kBodyRadius_m = 0.15;
-constexpr double kMargin_m = 0.05;
 constexpr double kMessage_s = 0.001;  // over DDS
 
 }  // namespace
-
-std::shared_ptr<const VoxelGrid> default_map() {
-  const auto world = worlds::make_world(worlds::default_world()).value();
-  const double growth_m = kBodyRadius_m + kMargin_m;
-  auto grown = inflate(world.occupied, growth_m, world.geometry.resolution_m).value();
-  return std::make_shared<const VoxelGrid>(VoxelGrid{.geometry = world.geometry,
-                                                     .grown = std::move(grown),
-                                                     .known = {},
-                                                     .raw = world.occupied,
-                                                     .version = 1,
-                                                     .inflation_m = growth_m});
-}
-
-bool touches(const VoxelGrid& map, const Vec3& position_map) {
-  const Vec3 p = map.geometry.to_grid(position_map);
-  const double reach = kBodyRadius_m / map.geometry.resolution_m;
-  const Vec3 lo = (p.array() - reach).floor(), hi = (p.array() + reach).floor();
-  for (int x = int(lo.x()); x <= int(hi.x()); ++x) {
-    for (int y = int(lo.y()); y <= int(hi.y()); ++y) {
-      for (int z = int(lo.z()); z <= int(hi.z()); ++z) {
-        const Vec3 corner(x, y, z);
-        const Vec3 nearest = p.cwiseMax(corner).cwiseMin(corner + Vec3::Ones());
-        const bool occupied = map.raw.contains({x, y, z}) && map.raw.test({x, y, z});
-        if (occupied && (nearest - p).norm() < reach) return true;
-      }
-    }
-  }
-  return false;
-}
 
 FlightLab::FlightLab(std::shared_ptr<const VoxelGrid> map, std::uint64_t seed,
                      const Delays& delays, const navigator::Config& config, const Vec3& home_map)
@@ -97,14 +65,6 @@ Vec3 FlightLab::random_place() {
   }
 }
 
-Vec3 FlightLab::blocked_place() {
-  const Index3 size = map_->geometry.size;
-  while (true) {
-    const Index3 i{random_.below(size.x), random_.below(size.y), random_.below(size.z)};
-    if (map_->grown.test(i)) return map_->geometry.center(i);
-  }
-}
-
 void FlightLab::step() {
   const std::int64_t now = vehicle_.time_ns();
   while (!events_.empty() && events_.front().time_ns <= now) {
@@ -133,7 +93,7 @@ void FlightLab::step() {
   }
   if (auto status = vehicle_.advance(0.001); !status) throw std::logic_error(status.error().message);
   max_speed_m_s_ = std::max(max_speed_m_s_, speed());
-  if (touches(*map_, position())) ++contacts_;
+  if (obstacle_distance_m(*map_, position(), kBody_m) < kBody_m) ++contacts_;
 }
 
 void FlightLab::in(double seconds, std::function<void()> act) {
@@ -150,9 +110,7 @@ void FlightLab::take_orders() {
 
 void FlightLab::obey(const PlanRequest& request) {
   ++plans_;
-  newest_request_ = request.id;
   auto planned = plan(request);
-  if (meddle) meddle(request, planned.answer);
   const bool late = random_.chance(delays_.late_share);
   const double delay_s = random_.uniform(delays_.plan_min_s, delays_.plan_max_s) +
                          (late ? random_.uniform(0.0, delays_.late_s) : 0.0);

@@ -24,11 +24,6 @@ struct Delays {
   double late_s = 0.5;
 };
 
-/// The default world, its map grown for the default vehicle.
-std::shared_ptr<const VoxelGrid> default_map();
-/// Is the body nearer to an occupied voxel than its radius?
-bool touches(const VoxelGrid& map, const Vec3& position_map);
-
 /// All stages' cores, the tracker and the simulated vehicle in one thread and simulated time: a
 /// flight of a second takes milliseconds, and equal seeds give equal flights.
 class FlightLab {
@@ -47,9 +42,6 @@ class FlightLab {
   /// @return a free place that the search reaches from the first one
   Vec3 random_place();
 
-  /// @return the centre of a voxel of the grown map
-  Vec3 blocked_place();
-
   tracker::Tracker& tracker() { return tracker_; }
   const std::optional<CommittedTrajectory>& flown() const { return flown_; }  // newest accepted
   std::int64_t now_ns() const { return vehicle_.time_ns(); }
@@ -61,8 +53,6 @@ class FlightLab {
   bool settled() const {
     return state_.state == navigator::State::arrived || state_.state == navigator::State::failed;
   }
-  tracker::TrackingStatus tracking() const { return tracker_.status(); }
-  std::uint64_t newest_request() const { return newest_request_; }
   double now_s() const { return double(vehicle_.time_ns()) * 1e-9; }
 
   int plans() const { return plans_; }
@@ -70,14 +60,11 @@ class FlightLab {
   int contacts() const { return contacts_; }  // milliseconds in which the body touches
   double max_error_m() const { return max_error_m_; }
   double max_speed_m_s() const { return max_speed_m_s_; }
-  std::vector<Error> refusals;    // of the tracker
-  std::vector<Error> complaints;  // of the navigator, about answers
-  std::vector<Error> losses;      // of trajectories, by the tracker
+  std::vector<Error> refusals;  // of the tracker
+  std::vector<Error> losses;    // of trajectories, by the tracker
 
   /// Called after each millisecond.
   std::function<void()> watch;
-  /// May change or take away the stages' answer to a request.
-  std::function<void(const PlanRequest&, Result<Commitment>&)> meddle;
 
  private:
   struct Event {
@@ -89,7 +76,7 @@ class FlightLab {
   void take_orders();
   void obey(const PlanRequest& request);
   void obey(const navigator::Commit& commit);
-  void obey(const navigator::Complaint& complaint) { complaints.push_back(complaint.reason); }
+  void obey(const navigator::Complaint&) {}
   void obey(const navigator::StateOrder& state) { state_ = state; }
   struct Planned {
     Result<Commitment> answer;
@@ -113,7 +100,6 @@ class FlightLab {
   std::optional<CommittedTrajectory> flown_;
   std::string reported_;
   std::uint64_t answers_ = 0;
-  std::uint64_t newest_request_ = 0;
   int plans_ = 0;
   int commits_ = 0;
   int contacts_ = 0;

@@ -1,20 +1,20 @@
 // Goals that come in flight, at random moments and to random places of the default world.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
+#include <cstdio>
 #include <map>
+#include <string>
 
+#include "count_of.hpp"
 #include "flight_lab.hpp"
+#include "growing_world.hpp"
 
 namespace goshawk::goals {
 namespace {
 
-int count_of(const char* variable, int otherwise) {
-  const char* text = std::getenv(variable);
-  return text != nullptr ? std::atoi(text) : otherwise;
+std::shared_ptr<const VoxelGrid> default_map() {
+  return GrowingWorld(worlds::default_world()).map();
 }
-
-constexpr double kAllowed_m = 0.05;  // margin_m of the map server
 
 struct Tally {
   int sent = 0;
@@ -60,7 +60,7 @@ TEST(GoalsInFlight, NoneIsDropped) {
   EXPECT_EQ(tally.dropped, 0);
   EXPECT_EQ(tally.stuck, 0);
   EXPECT_EQ(lab.contacts(), 0);
-  EXPECT_LT(lab.max_error_m(), kAllowed_m);
+  EXPECT_LT(lab.max_error_m(), kTrackingMargin_m);
   EXPECT_TRUE(lab.losses.empty());
 }
 
@@ -89,7 +89,7 @@ TEST(GoalsInFlight, NoSequenceOfCommitsTakesTheVehicleOutOfItsMargin) {
   }
   std::printf("%d sequences, %d commits: %zu lost, largest error %.4f m\n", sequences, commits,
               lost, worst_m);
-  EXPECT_LT(worst_m, kAllowed_m);
+  EXPECT_LT(worst_m, kTrackingMargin_m);
   EXPECT_EQ(lost, 0u);
 }
 

@@ -4,15 +4,10 @@
 #include <cmath>
 
 #include "goshawk/core/inflation.hpp"
-#include "goshawk/worlds/world.hpp"
 
 namespace goshawk::goals {
 
-GrowingWorld::GrowingWorld(const Vec3& size_m, double density, std::uint64_t seed) {
-  worlds::WorldSpec spec;
-  spec.size_m = size_m;
-  spec.density = density;
-  spec.seed = seed;
+GrowingWorld::GrowingWorld(const worlds::WorldSpec& spec) {
   auto made = worlds::make_world(spec).value();
   geometry_ = made.geometry;
   raw_ = std::move(made.occupied);
@@ -35,18 +30,18 @@ void GrowingWorld::add(Index3 voxel) {
   grow();
 }
 
-double GrowingWorld::distance_m(const Vec3& p_map, double within_m) const {
-  const Vec3 p = geometry_.to_grid(p_map);
-  const int reach = int(std::ceil(within_m / geometry_.resolution_m));
+double obstacle_distance_m(const VoxelGrid& map, const Vec3& p_map, double within_m) {
+  const Vec3 p = map.geometry.to_grid(p_map);
+  const int reach = int(std::ceil(within_m / map.geometry.resolution_m));
   const Index3 at{int(std::floor(p.x())), int(std::floor(p.y())), int(std::floor(p.z()))};
   double nearest = within_m;
   for (int z = at.z - reach; z <= at.z + reach; ++z) {
     for (int y = at.y - reach; y <= at.y + reach; ++y) {
       for (int x = at.x - reach; x <= at.x + reach; ++x) {
-        if (!raw_.contains({x, y, z}) || !raw_.get({x, y, z})) continue;
+        if (!map.raw.contains({x, y, z}) || !map.raw.get({x, y, z})) continue;
         const Vec3 corner(x, y, z);
         const Vec3 off = (corner - p).cwiseMax(p - corner - Vec3::Ones()).cwiseMax(0.0);
-        nearest = std::min(nearest, geometry_.resolution_m * off.norm());
+        nearest = std::min(nearest, map.geometry.resolution_m * off.norm());
       }
     }
   }

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
+#include <optional>
 
+#include "count_of.hpp"
 #include "flight_lab.hpp"
 #include "growing_world.hpp"
 
@@ -16,14 +17,17 @@ namespace {
 
 constexpr double kLongestFlight_s = 40.0;
 
-/// How many flights; GOSHAWK_FLIGHTS in the environment flies more of them.
 int flights_or(int usual) {
-  const char* wish = std::getenv("GOSHAWK_FLIGHTS");
-  return wish == nullptr ? usual : std::max(1, std::atoi(wish));
+  return count_of("GOSHAWK_FLIGHTS", usual);
 }
 
+/// Boxes and pillars. @param density share of the grown map that is blocked
 GrowingWorld random_world(std::uint64_t seed, double density) {
-  return {Vec3(8.0, 8.0, 4.0), density, seed};
+  worlds::WorldSpec spec;
+  spec.size_m = Vec3(8.0, 8.0, 4.0);
+  spec.density = density;
+  spec.seed = seed;
+  return GrowingWorld(spec);
 }
 
 FlightLab lab_in(const GrowingWorld& world, const Vec3& start, std::uint64_t seed) {
@@ -139,7 +143,7 @@ TEST(MapPromise, ObstaclesThatAppearInFlightAreNeverTouched) {
     FlightLab lab = lab_in(world, world.free_place(random), std::uint64_t(seed));
     const auto judge = [&] {
       const Vec3 p = lab.position();
-      const double distance_m = world.distance_m(p, 0.5);
+      const double distance_m = obstacle_distance_m(*world.map(), p, 0.5);
       nearest_m = std::min(nearest_m, distance_m);
       fastest_m_s = std::max(fastest_m_s, lab.speed());
       ASSERT_GT(distance_m, kBody_m) << "touches at " << to_text(p) << " m";

@@ -1,6 +1,7 @@
 #include "lies.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "goshawk/conversions/plan.hpp"
 #include "goshawk/conversions/vehicle.hpp"

@@ -5,11 +5,9 @@ import json
 import signal
 
 import harness
-import second_opinion
 from harness import PREFIX, node_of, note, until
-from stack import StackTest, position_of
+from stack import PLACES, StackTest, position_of
 
-PLACES = [(3.0, 8.0, 2.0), (3.0, 0.0, 1.0)]
 # lie: options, and a stage that must refuse it
 LIES = {
     "commit": ([], "tracker"),
@@ -42,11 +40,6 @@ class HostileParticipant(StackTest):
         return [r for r in self.stack.reports.lines()[since:]
                 if r["code"] == "second_writer" and node_of(r) == stage]
 
-    def fly(self, place):
-        state = self.stack.fly_to(place)
-        self.assertIsNotNone(state, self.stack.launch.tails())
-        self.assertEqual(state["state"], "arrived", state)
-
     def test_1_lies_are_refused_and_every_goal_is_reached(self):
         pids = self.stack.launch.pids()
         for name, (options, stage) in LIES.items():
@@ -56,8 +49,7 @@ class HostileParticipant(StackTest):
                 impostor = self.sandbox.start(PREFIX / "bin" / "goshawk_impostor", name.split()[0],
                                               "--to", to, *options)
                 self.assertTrue(until(lambda i=impostor: i.lines(), 10.0), str(impostor.outcome()))
-                for place in PLACES:
-                    self.fly(place)
+                self.fly()
                 self.assertTrue(until(lambda: self.refused_by(stage, since), 10.0),
                                 self.stack.launch.tails())
                 self.assertEqual(impostor.stop(signal.SIGTERM)[0], 0, str(impostor.outcome()))
@@ -72,14 +64,10 @@ class HostileParticipant(StackTest):
         self.assertEqual(json.loads(outcome.out)["code"], "not_permitted", str(outcome))
 
     def test_3_a_goal_after_the_liars_have_left_is_reached(self):
-        for place in PLACES:
-            self.fly(place)
+        self.fly()
 
     def test_4_nothing_was_touched(self):
-        track = [position_of(m) for m in self.truth.lines()]
-        clearance = second_opinion.smallest_clearance(self.stack.world, track, 0.02)
-        note(f"least clearance {clearance:.3f} m over {len(track)} states")
-        self.assertGreater(clearance, harness.BODY_RADIUS_M)
+        self.check_untouched([position_of(m) for m in self.truth.lines()])
 
 
 if __name__ == "__main__":

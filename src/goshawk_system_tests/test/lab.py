@@ -1,5 +1,5 @@
 """Two hosts on one machine: network namespaces with a link between them that delays, loses, doubles
-and cuts (lab/link.cpp), and a wall clock for each (lab/clock.c).
+and cuts (lab/link.cpp), and a wall clock for each (the shim of goshawk_bringup).
 
     vehicle 10.77.0.2 --- veth --- goshawk_lab_link --- veth --- 10.77.0.1 ground
 
@@ -9,13 +9,16 @@ NotPermitted, which says what is missing.
 
 import os
 import subprocess
+import sys
 
 from harness import GOSHAWK, PREFIX, until
+
+sys.path.insert(0, str(PREFIX / "lib" / "goshawk"))
+import fault_control  # noqa: E402
 
 DOMAIN = 7  # nobody else is in these namespaces
 ADDRESSES = {"ground": "10.77.0.1", "vehicle": "10.77.0.2"}
 LINK = PREFIX / "bin" / "goshawk_lab_link"
-CLOCK = PREFIX / "lib" / "libgoshawk_lab_clock.so"
 
 
 class NotPermitted(Exception):
@@ -26,9 +29,17 @@ def run(*command):
     done = subprocess.run([str(word) for word in command], text=True, stdin=subprocess.DEVNULL,
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
     if done.returncode != 0:
-        raise NotPermitted(f"no network namespaces here: {' '.join(map(str, command))}: "
-                           f"{done.stdout.strip()} (needs root, or CAP_SYS_ADMIN, CAP_NET_ADMIN and "
-                           "CAP_NET_RAW, and the packages iproute2 and util-linux)")
+        raise AssertionError(f"{' '.join(map(str, command))}: {done.stdout.strip()}")
+
+
+def attempt(*command):
+    """What a machine may not permit."""
+    try:
+        run(*command)
+    except AssertionError as fault:
+        raise NotPermitted(f"no network namespaces here: {fault} (needs root, or CAP_SYS_ADMIN, "
+                           "CAP_NET_ADMIN and CAP_NET_RAW, and the packages iproute2 and "
+                           "util-linux)") from fault
 
 
 class Namespace:
@@ -42,7 +53,7 @@ class Namespace:
         if not self.holder.alive():
             raise NotPermitted(f"no network namespaces here: unshare --net: "
                                f"{self.holder.err().strip()} (needs root or CAP_SYS_ADMIN)")
-        self.ip("link", "set", "lo", "up")
+        attempt(*self.enter("ip", "link", "set", "lo", "up"))
 
     def now(self):
         try:
@@ -69,9 +80,10 @@ class Host:
     def set_clock(self, ahead_s):
         """The wall clock of all that is started from now on."""
         if ahead_s:
-            self.env.update(LD_PRELOAD=str(CLOCK), GOSHAWK_LAB_CLOCK_S=str(ahead_s))
+            shim = fault_control.environment(fault_control.shim_of(PREFIX), self.folder / "no_faults")
+            self.env.update(shim, GOSHAWK_LAB_CLOCK_S=str(ahead_s))
         else:
-            self.env.pop("LD_PRELOAD", None)
+            self.env.pop("GOSHAWK_LAB_CLOCK_S", None)
 
     def start(self, *command, env=None, **options):
         return self.sandbox.start(*self.namespace.enter(*command), env={**self.env, **(env or {})},
@@ -95,8 +107,10 @@ class Lab:
         for name, address in ADDRESSES.items():
             namespace = Namespace(sandbox)
             self.namespaces.append(namespace)
-            between.ip("link", "add", f"to_{name}", "type", "veth", "peer", "name", "eth0", "netns",
-                       namespace.holder.pid)
+            # The first link is what a machine may not permit; what fails after it is a fault.
+            add = run if self.hosts else attempt
+            add(*between.enter("ip", "link", "add", f"to_{name}", "type", "veth", "peer", "name",
+                               "eth0", "netns", namespace.holder.pid))
             between.ip("link", "set", f"to_{name}", "up")
             namespace.ip("address", "add", f"{address}/24", "dev", "eth0")
             namespace.ip("link", "set", "eth0", "up")

@@ -7,7 +7,9 @@ import re
 import unittest
 import uuid
 
-from harness import GOSHAWK, STAGES, Publisher, Sandbox, SystemTest, node_of, until, words
+import second_opinion
+from harness import (BODY_RADIUS_M, GOSHAWK, STAGES, Publisher, Sandbox, SystemTest, node_of, note,
+                     until, words)
 
 
 class Launch:
@@ -149,6 +151,10 @@ def goal_message(goal, frame="map"):
             "pose": {"position": {"x": x, "y": y, "z": z}, "orientation": {"w": 1.0}}}
 
 
+# Free places of the default world, far from each other; a flight begins at the last one.
+PLACES = [(3.0, 8.0, 2.0), (3.0, 0.0, 1.0)]
+
+
 class StackTest(unittest.TestCase):
     """Tests of one launched stack that all methods share: what each does, the next must survive."""
 
@@ -159,7 +165,8 @@ class StackTest(unittest.TestCase):
     def setUpClass(cls):
         cls.sandbox = Sandbox()
         try:
-            cls.stack = Stack(cls.sandbox, cls.launch_file, cls.ros_args, cls.launch_env())
+            cls.stack = Stack(cls.sandbox, cls.launch_file, cls.ros_args, cls.launch_env(),
+                              cls.launch_options())
             cls.stack.wait_ready()
         except BaseException:
             cls.sandbox.close()
@@ -175,6 +182,26 @@ class StackTest(unittest.TestCase):
     def launch_env(cls):
         """More variables of the stages' environment."""
         return {}
+
+    @classmethod
+    def launch_options(cls):
+        """More words of the call of `goshawk launch`."""
+        return ()
+
+    def fly(self, places=PLACES):
+        """Each place is reached, one after the other."""
+        for place in places:
+            state = self.stack.fly_to(place)
+            self.assertIsNotNone(state, "no answer to a goal\n" + self.stack.launch.tails())
+            self.assertEqual(state["state"], "arrived", state)
+
+    def check_untouched(self, track=None):
+        """@param track where the vehicle was; by default what odometry said"""
+        track = self.stack.track() if track is None else track
+        clearance = second_opinion.smallest_clearance(self.stack.world, track, 0.02)
+        note(f"smallest distance of the centre to an obstacle so far {clearance:.3f} m, over "
+             f"{len(track)} states")
+        self.assertGreater(clearance, BODY_RADIUS_M)
 
     json_object = SystemTest.json_object
     assert_civil = SystemTest.assert_civil

@@ -10,7 +10,7 @@ import sys
 import time
 
 import harness
-from harness import PREFIX, STAGES, note, until
+from harness import PREFIX, STAGES, note
 from legs_case import LegsCase
 
 sys.path.insert(0, str(PREFIX / "lib" / "goshawk"))
@@ -60,11 +60,13 @@ class UpsetFlight(LegsCase):
     def stall(self, stages, seconds):
         """Stops processes, and lets them go on once so much time has passed."""
         pids = [self.stack.launch.pids()[stage] for stage in stages]
-        for pid in pids:
-            os.kill(pid, signal.SIGSTOP)
-        time.sleep(seconds)
-        for pid in pids:
-            os.kill(pid, signal.SIGCONT)
+        try:
+            for pid in pids:
+                os.kill(pid, signal.SIGSTOP)
+            time.sleep(seconds)
+        finally:
+            for pid in pids:
+                os.kill(pid, signal.SIGCONT)
 
     def test_1_the_tracker_stops_for_a_while(self):
         for seconds in (0.05, self.draw.uniform(0.3, 0.8), self.draw.uniform(2.0, 4.0)):

@@ -24,12 +24,13 @@ class Flight {
  public:
   /// @param recorded whether the recorder hears the planning stages
   Flight(const FlyOptions& options, const Preparation& preparation, const std::string& folder,
-         const Say& say, runtime::Node& node, ChildVerb launch, std::function<bool()> recorded)
+         const Say& say, runtime::Node& node, FlightEvents events, ChildVerb launch,
+         std::function<bool()> recorded)
       : options_(options),
         p_(preparation),
         folder_(folder),
         say_(say),
-        record_(node, folder + "/events.jsonl"),
+        record_(node, std::move(events)),
         launch_(std::move(launch)),
         recorded_(std::move(recorded)) {}
 
@@ -225,6 +226,8 @@ Result<Json> fly(const FlyOptions& options, const Preparation& p, const Say& say
   const auto folder = make_flight_folder(options, p);
   if (!folder) return folder.error();
   FolderGuard guard(*folder, existed);
+  auto events = FlightEvents::open(*folder + "/events.jsonl");
+  if (!events) return events.error();
   std::optional<ChildVerb> recorder;
   if (options.record) {
     auto started = start_recorder(*folder, *domain);
@@ -234,7 +237,7 @@ Result<Json> fly(const FlyOptions& options, const Preparation& p, const Say& say
   auto launch =
       start_launch(launch_arguments(options, p, *folder), *domain, *folder + "/logs/launch.log");
   if (!launch) return launch.error();
-  Flight flight(options, p, *folder, say, node, *std::move(launch),
+  Flight flight(options, p, *folder, say, node, *std::move(events), *std::move(launch),
                 [&] { return !recorder || hears_planning(**context, recorder->pid()); });
   const FlightOutcome outcome = flight.fly();
   if (recorder) recorder->stop();

@@ -1,8 +1,22 @@
 #include "flight/flight_events.hpp"
 
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstring>
+
 #include "goshawk/conversions/status.hpp"
 
 namespace goshawk::cli {
+
+Result<FlightEvents> FlightEvents::open(const std::string& file) {
+  std::ofstream stream(file);
+  if (!stream) {
+    return fail(ErrorCode::io_failed,
+                fmt::format("{} cannot be written: {}", file, std::strerror(errno)));
+  }
+  return FlightEvents(std::move(stream));
+}
 
 void FlightEvents::add(std::int64_t at_ns, const std::string& event, Json what) {
   Json line{{"at_ns", at_ns}, {"event", event}};

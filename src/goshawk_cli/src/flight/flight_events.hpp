@@ -3,7 +3,9 @@
 #include <cstdint>
 #include <fstream>
 #include <string>
+#include <utility>
 
+#include "goshawk/core/result.hpp"
 #include "goshawk_msgs.h"
 #include "json.hpp"
 
@@ -13,7 +15,8 @@ namespace goshawk::cli {
 /// folder (docs/cli.md). What repeats is written once.
 class FlightEvents {
  public:
-  explicit FlightEvents(const std::string& file) : file_(file) {}
+  /// @return io_failed if the file cannot be written
+  static Result<FlightEvents> open(const std::string& file);
 
   /// @param at_ns when it was heard of, on the monotonic clock
   void add(std::int64_t at_ns, const std::string& event, Json what);
@@ -24,6 +27,8 @@ class FlightEvents {
   void report(std::int64_t at_ns, const goshawk_msgs::msg::StageReport& m);
 
  private:
+  explicit FlightEvents(std::ofstream file) : file_(std::move(file)) {}
+
   std::ofstream file_;
   Json navigator_;
   Json tracker_;

@@ -20,9 +20,9 @@ constexpr double kListenStep_s = 0.05;
 
 }  // namespace
 
-FlightRecorder::FlightRecorder(Node& node, const std::string& events_file)
+FlightRecorder::FlightRecorder(Node& node, FlightEvents events)
     : node_(node),
-      events_(events_file),
+      events_(std::move(events)),
       goals_(node.advertise<geometry_msgs::msg::PoseStamped>("goal_pose", Qos::reliable_last())) {
   node.subscribe<msg::StageReport>("stage_report", Qos::latched(100),
                                    [this](const msg::StageReport& m, const MessageInfo&) {

@@ -37,7 +37,7 @@ struct RequestRecord {
 /// Listens to a whole flight, sends goals, and keeps what came.
 class FlightRecorder {
  public:
-  FlightRecorder(runtime::Node& node, const std::string& events_file);
+  FlightRecorder(runtime::Node& node, FlightEvents events);
 
   void send_goal(const Vec3& goal_map);
 
