@@ -99,24 +99,18 @@ void fill(RawVoxels& raw, Index3 at, int side, bool occupied) {
   }
 }
 
-}  // namespace
-
-Result<RawVoxels> voxelize(const octomap::OcTree& tree, const VoxelizeOptions& options) try {
-  const auto geometry = geometry_of(tree, options);
-  if (!geometry) return geometry.error();
-  RawVoxels raw{*geometry, BitGrid(geometry->size, true), BitGrid(geometry->size, false)};
-  const Index3 origin = lower_key(*geometry);
-  const KeyBox keys{origin, origin + geometry->size};
-  const auto outside = [&](Index3 at, int side) { return keys.misses(at, side); };
-  for_leaves(tree, outside, [&](const octomap::OcTreeNode& leaf, Index3 at, int side) {
-    fill(raw, at - origin, side, tree.isNodeOccupied(leaf));
-  });
-  return raw;
-} catch (const std::bad_alloc&) {
-  return fail(ErrorCode::map_too_large,
-              "the map's bits do not fit into memory: give a smaller box");
+// Row by row: what grows under the policy. Padding bits of the result are undefined.
+BitGrid::Word growing_word(BitGrid::Word occupied, BitGrid::Word known,
+                                  UnknownPolicy policy) {
+  return policy == UnknownPolicy::occupied ? occupied | ~known : occupied;
 }
 
+// What is added after the growth. Padding bits of the result are undefined.
+BitGrid::Word finished_word(BitGrid::Word grown, BitGrid::Word known, UnknownPolicy policy) {
+  return policy == UnknownPolicy::blocked ? grown | ~known : grown;
+}
+
+// make_voxel_grid without the demand that something stays free.
 Result<VoxelGrid> grow(const RawVoxels& raw, const Growth& growth, std::uint64_t version) {
   // Word by word, in a copy that shares the chunks that do not change.
   const auto combine = [&](BitGrid& bits, auto&& rule) {
@@ -144,6 +138,24 @@ Result<VoxelGrid> grow(const RawVoxels& raw, const Growth& growth, std::uint64_t
                    .inflation_m = growth.inflation_m,
                    .unknown_is_occupied = growth.unknown != UnknownPolicy::free,
                    .unknown_grows = growth.unknown == UnknownPolicy::occupied};
+}
+
+}  // namespace
+
+Result<RawVoxels> voxelize(const octomap::OcTree& tree, const VoxelizeOptions& options) try {
+  const auto geometry = geometry_of(tree, options);
+  if (!geometry) return geometry.error();
+  RawVoxels raw{*geometry, BitGrid(geometry->size, true), BitGrid(geometry->size, false)};
+  const Index3 origin = lower_key(*geometry);
+  const KeyBox keys{origin, origin + geometry->size};
+  const auto outside = [&](Index3 at, int side) { return keys.misses(at, side); };
+  for_leaves(tree, outside, [&](const octomap::OcTreeNode& leaf, Index3 at, int side) {
+    fill(raw, at - origin, side, tree.isNodeOccupied(leaf));
+  });
+  return raw;
+} catch (const std::bad_alloc&) {
+  return fail(ErrorCode::map_too_large,
+              "the map's bits do not fit into memory: give a smaller box");
 }
 
 Error nothing_free(const Growth& growth) {

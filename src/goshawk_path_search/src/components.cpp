@@ -4,6 +4,8 @@
 #include <bit>
 #include <cstdlib>
 
+#include "goshawk/core/grid_update.hpp"
+
 namespace goshawk::path_search {
 namespace {
 
@@ -116,7 +118,7 @@ Index3 Components::place(std::size_t brick) const {
 // Rows outside the map are not free.
 Components::Rows Components::free_rows(Index3 brick) const {
   Rows rows{};
-  const std::uint64_t inside = brick.x + 1 == count_.x ? last_word_ : ~std::uint64_t{0};
+  const std::uint64_t inside = bits_inside(brick, held_.size());
   const int y0 = kBrickSide * brick.y, z0 = kBrickSide * brick.z;
   const int y_rows = std::min(kBrickSide, held_.size().y - y0);
   const int z_rows = std::min(kBrickSide, held_.size().z - z0);
@@ -158,13 +160,11 @@ void Components::follow(const BitGrid& blocked) {
   if (held_.size() == size) {
     for_changed_chunks(held_, blocked, [&](BitGrid::Rows rows) { mark_changes(blocked, rows); });
   } else {
-    const auto in_bricks = [](int voxels) { return (voxels - 1) / kBrickSide + 1; };
-    count_ = {int(blocked.words_per_row()), in_bricks(size.y), in_bricks(size.z)};
+    count_ = brick_counts(size);
     bricks_.clear();
     bricks_.resize(std::size_t(count_.x) * std::size_t(count_.y) * std::size_t(count_.z));
   }
   held_ = blocked;
-  last_word_ = ~std::uint64_t{0} >> (63 - (size.x - 1) % 64);
   phase_ = Phase::labelling;
   next_ = 0;
 }

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "best_first_search.hpp"
+#include "expansion.hpp"
 
 namespace goshawk::path_search {
 namespace {

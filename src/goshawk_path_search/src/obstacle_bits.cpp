@@ -142,7 +142,7 @@ void ObstacleBits::apply_changes(std::uint64_t changes, int x0, int y, int z) {
   }
 }
 
-// What depends on the voxel at p: three words at most of each of the nine rows around it.
+// What depends on the voxel at p: two words at most of each of the nine rows around it.
 void ObstacleBits::forget_around(Copy& copy, std::int64_t p) {
   for (const std::int64_t v : {-copy.stride_v, std::int64_t{0}, copy.stride_v}) {
     for (const std::int64_t u : {-copy.stride_u, std::int64_t{0}, copy.stride_u}) {

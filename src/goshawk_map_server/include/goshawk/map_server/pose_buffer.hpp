@@ -41,7 +41,6 @@ class PoseBuffer {
   bool empty() const { return poses_.empty(); }
   /// @pre not empty
   std::int64_t oldest_ns() const { return poses_.front().stamp_ns; }
-  std::int64_t newest_ns() const { return poses_.back().stamp_ns; }
 
   /// The positions after `from_ns` up to `to_ns`, in their order, into `path`.
   void positions(std::int64_t from_ns, std::int64_t to_ns, std::vector<Vec3>& path) const;
@@ -51,6 +50,7 @@ class PoseBuffer {
     std::int64_t stamp_ns;
     Pose pose;
   };
+  std::int64_t newest_ns() const { return poses_.back().stamp_ns; }
   std::size_t first_not_before(std::int64_t stamp_ns) const;
 
   std::string what_;

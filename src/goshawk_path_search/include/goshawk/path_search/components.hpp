@@ -88,7 +88,6 @@ class Components {
   std::size_t next_ = 0;         // brick of the phase
   BitGrid held_;                 // what the bricks say, or are about to
   Index3 count_;                 // bricks
-  std::uint64_t last_word_ = 0;  // which bits of a row's last word are voxels
   std::vector<Brick> bricks_;
   std::vector<std::uint32_t> roots_;  // by component; a root of itself once ready
   std::vector<std::uint16_t> runs_;   // of the brick at work
