@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -158,6 +159,10 @@ class Decoder {
     const char* text = reinterpret_cast<const char*>(payload_.data() + at_);
     at_ += length;
     if (length > 0 && text[length - 1] == '\0') --length;
+    if (std::find(text, text + length, '\0') != text + length) {
+      fault_ = "contains a zero character, which ends a string on the wire";
+      return false;
+    }
     out = std::string(text, length);
     return true;
   }

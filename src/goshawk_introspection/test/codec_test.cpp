@@ -167,6 +167,13 @@ TEST(CdrToJson, RefusesLengthsThatCannotBe) {
   EXPECT_THAT(poses.error().message, HasSubstr("poses claims"));
 }
 
+TEST(CdrToJson, RefusesAStringThatEndsBeforeItsEnd) {
+  const Bytes text = {0, 1, 0, 0, 4, 0, 0, 0, 'a', 0, 'b', 0};
+  const auto json = cdr_to_json(type("std_msgs/msg/String"), text);
+  ASSERT_FALSE(json);
+  EXPECT_THAT(json.error().message, HasSubstr("data contains a zero character"));
+}
+
 TEST(CdrToJson, NamesTheFieldAtFault) {
   auto bytes = *json_to_cdr(type("goshawk_msgs/msg/VehicleStatus"), Json::object());
   bytes[4 + 8 + 4 + 1] = 7;  // stamp, frame_id's length, its zero, then the bool

@@ -168,7 +168,7 @@ class MapServerComponent : public Component {
   }
 
   void on_cloud(const sensor_msgs::msg::PointCloud2& m) {
-    Waiting next{{}, m.header().frame_id(), node_.now_ns()};
+    Waiting next{{}, m.header().frame_id(), node_.monotonic_ns()};
     if (auto s = read_cloud(m, std::size_t(config_.max_points), next.cloud); !s) {
       return reporter_.fault(s.error());
     }
@@ -194,7 +194,7 @@ class MapServerComponent : public Component {
     while (!waiting_.empty()) {
       const Waiting& next = waiting_.front();
       const auto status = place_in_map(next);
-      const double waited_s = 1e-9 * double(node_.now_ns() - next.since_ns);
+      const double waited_s = 1e-9 * double(node_.monotonic_ns() - next.since_ns);
       const bool may_come = !status && status.code() == ErrorCode::tracking_lost &&
                             !odometry_.empty() && waited_s < config_.pose_wait_s &&
                             time_span(next.cloud).first_ns >= odometry_.oldest_ns();

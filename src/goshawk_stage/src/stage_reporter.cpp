@@ -55,10 +55,10 @@ void StageReporter::fault(const Error& error) {
 }
 
 void StageReporter::complain(const Error& error) {
-  const std::int64_t since_ns = node_.now_ns() - complained_ns_;
+  const std::int64_t now_ns = node_.monotonic_ns(), since_ns = now_ns - complained_ns_;
   // Simulated time begins anew with its simulation.
   if (complained_ns_ != 0 && since_ns >= 0 && since_ns < kComplainEvery_ns) return;
-  complained_ns_ = node_.now_ns();
+  complained_ns_ = now_ns;
   fault(error);
 }
 

@@ -51,7 +51,7 @@ class OptimizerComponent : public runtime::Component {
     const auto corridor = conversions::from_msg(m);
     if (!corridor) return corridor.error();
     return optimizer_.optimise(request, *corridor,
-                               [&] { return !check_deadline(request, node_.now_ns()); });
+                               [&] { return !check_deadline(request, node_.monotonic_ns()); });
   }
 
   void on_corridor(const goshawk_msgs::msg::Corridor& m, const PlanRequest& request,
