@@ -8,6 +8,8 @@
 
 #include <cerrno>
 
+#include "lz4.hpp"
+
 namespace goshawk::recording {
 namespace {
 
@@ -20,7 +22,7 @@ Error damaged(const Block& block, const std::string& what) {
 }
 
 // Grows with what is unpacked, not with what is claimed.
-Result<Bytes> unpack(const Block& block, View packed) {
+Result<Bytes> unpack_zstd(const Block& block, View packed) {
   const std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> context(ZSTD_createDCtx(),
                                                                      &ZSTD_freeDCtx);
   constexpr std::size_t kStep = 64 << 10;
@@ -41,6 +43,14 @@ Result<Bytes> unpack(const Block& block, View packed) {
       return out;
     }
   }
+}
+
+// @return also records of another size than the block claims: fewer
+Result<Bytes> unpack(const Block& block, View packed) {
+  if (block.compression == "zstd") return unpack_zstd(block, packed);
+  auto records = unpack_lz4(packed, std::size_t(block.uncompressed_size));
+  if (!records) return damaged(block, records.error().message);
+  return records;
 }
 
 }  // namespace
@@ -94,8 +104,10 @@ std::optional<Block> chunk_of(View head, std::uint64_t offset, std::uint64_t siz
 }
 
 Result<Bytes> load(const File& file, const Block& block) {
-  if (!block.compression.empty() && block.compression != "zstd") {
-    return damaged(block, fmt::format("its compression '{}' is not supported: zstd and none are",
+  const bool known = block.compression == "zstd" || block.compression == "lz4";
+  if (!block.compression.empty() && !known) {
+    return damaged(block, fmt::format("its compression '{}' is not supported: zstd, lz4 and none "
+                                      "are",
                                       block.compression));
   }
   if (block.uncompressed_size > kMostInChunk) {

@@ -1,218 +1,118 @@
 #include "goshawk/recording/reader.hpp"
 
 #include <fmt/format.h>
+
 #include <algorithm>
+#include <limits>
 #include <queue>
 
-#include "block.hpp"
+#include "folder.hpp"
+#include "part.hpp"
 
 namespace goshawk::recording {
+
+using Ids = std::map<std::uint16_t, std::uint16_t>;  // of one part to those of the recording
+
+struct Reader::Impl {
+  std::vector<Part> parts;
+  std::vector<Ids> channel_ids;         // of each part; the first keeps its own
+  std::vector<std::string> names = {};  // of the parts' files, if there are several
+  std::map<std::uint16_t, Schema> schemas = {};
+  std::map<std::uint16_t, Channel> channels = {};
+  std::map<std::uint16_t, std::uint64_t> counts = {};
+  std::uint64_t total = 0, start_ns = 0, end_ns = 0;
+  std::vector<std::string> complaints = {};
+
+  Status add(Part part);
+  void complain(std::size_t part, const std::string& sentence);
+};
+
 namespace {
 
-constexpr std::uint64_t kMostOutside = 4 << 20;  // [byte] of messages outside chunks, read at once
-constexpr std::uint64_t kMostDefinition = 64 << 20;  // [byte] of a schema or a channel
-constexpr std::uint64_t kChunkHead = 64;             // [byte] chunk fields before the records
+/// The number in `known` of an entry that is `same`, else a new one. @return nothing: there is none
+template <typename Entry, typename Same>
+std::optional<std::uint16_t> number_of(const std::map<std::uint16_t, Entry>& known, int least,
+                                       const Same& same) {
+  const auto found =
+      std::ranges::find_if(known, [&](const auto& entry) { return same(entry.second); });
+  if (found != known.end()) return found->first;
+  const int next = std::max(least, known.empty() ? 1 : known.rbegin()->first + 1);
+  if (next > std::numeric_limits<std::uint16_t>::max()) return {};
+  return std::uint16_t(next);
+}
+
+/// Where a part's channels are among those of the recording, to which they are added. @return
+/// invalid_input if there are more than MCAP can number
+Result<Ids> merge_channels(const Part& part, int least, std::map<std::uint16_t, Schema>& schemas,
+                           std::map<std::uint16_t, Channel>& channels) {
+  const Error too_many = fail(ErrorCode::invalid_input, "its files have more than 65535 channels");
+  Ids schema_ids{{0, 0}}, ids;
+  for (const auto& [id, part_schema] : part.schemas) {
+    Schema schema = part_schema;
+    const auto number = number_of(schemas, 1, [&](const Schema& other) {
+      return other.name == schema.name && other.encoding == schema.encoding &&
+             other.data == schema.data;
+    });
+    if (!number) return too_many;
+    schema_ids[id] = schema.id = *number;
+    schemas.emplace(*number, schema);
+  }
+  for (const auto& [id, part_channel] : part.channels) {
+    Channel channel = part_channel;
+    const auto schema = schema_ids.find(channel.schema_id);
+    channel.schema_id = schema == schema_ids.end() ? std::uint16_t{0} : schema->second;
+    const auto number = number_of(channels, least, [&](const Channel& other) {
+      return other.topic == channel.topic && other.schema_id == channel.schema_id &&
+             other.message_encoding == channel.message_encoding;
+    });
+    if (!number) return too_many;
+    ids[id] = channel.id = *number;
+    channels.emplace(*number, channel);
+  }
+  return ids;
+}
+
+/// A message's channel in the recording; one without a definition has none but in the first part.
+std::optional<std::uint16_t> channel_of_recording(const Ids& ids, std::uint16_t id, bool first) {
+  if (first) return id;
+  const auto found = ids.find(id);
+  return found == ids.end() ? std::nullopt : std::optional(found->second);
+}
 
 }  // namespace
 
-struct Reader::Impl {
-  explicit Impl(File f) : file(std::move(f)) {}
-
-  File file;
-  std::string profile;
-  std::map<std::uint16_t, Schema> schemas;
-  std::map<std::uint16_t, Channel> channels;
-  std::vector<Block> blocks;
-  std::map<std::uint16_t, std::uint64_t> counts;
-  std::uint64_t total = 0, start_ns = 0, end_ns = 0;
-  std::vector<std::string> complaints;
-  bool complete = false;    // it has a footer and the final magic
-  bool statistics = false;  // it has a count of messages
-  bool outside = false;     // the previous record was a message outside chunks
-
-  Status scan();
-  Status take_record(Opcode opcode, std::uint64_t at, std::uint64_t size);
-  Status take_small(Opcode opcode, std::uint64_t at, std::uint64_t size);
-  Status take_chunk(std::uint64_t at, std::uint64_t size);
-  Status take_message(std::uint64_t at, std::uint64_t size);
-  void take_statistics(View content);
-  void define(Opcode opcode, View content);
-  Status count_all();
-  void count(Block& block, View records);
-  void complain(std::string sentence) {
-    if (std::ranges::find(complaints, sentence) == complaints.end()) {
-      complaints.push_back(std::move(sentence));
-    }
-  }
-};
-
-// Walks from record to record without unpacking chunks: the summary of a whole file repeats all
-// definitions.
-Status Reader::Impl::scan() {
-  std::uint64_t at = kMagic.size();
-  while (!complete) {
-    if (at == file.size()) break;
-    const auto head = file.read(at, kRecordHead);
-    if (!head) return head.error();
-    In in(*head);
-    const auto opcode = Opcode(in.number<std::uint8_t>());
-    const auto size = in.number<std::uint64_t>();
-    if (!in.good() || size > file.size() - at - kRecordHead) break;
-    if (opcode == Opcode{0}) break;  // not a record: zeros of a file system after a loss of power
-    if (auto status = take_record(opcode, at + kRecordHead, size); !status) return status;
-    at += kRecordHead + size;
-  }
-  if (complete && at + kMagic.size() > file.size()) complete = false;
-  if (!complete) {
-    complain(
-        fmt::format("the recording is cut off after byte {} of {}: everything before that is read",
-                    at, file.size()));
-  }
-  const bool defined = std::ranges::all_of(
-      counts, [&](const auto& entry) { return channels.contains(entry.first); });
-  return complete && statistics && defined ? success() : count_all();
-}
-
-Status Reader::Impl::take_record(Opcode opcode, std::uint64_t at, std::uint64_t size) {
-  if (opcode != Opcode::message) outside = false;
-  switch (opcode) {
-    case Opcode::chunk:
-      return take_chunk(at, size);
-    case Opcode::message:
-      return take_message(at, size);
-    case Opcode::footer:
-      complete = true;
-      return success();
-    case Opcode::header:
-    case Opcode::schema:
-    case Opcode::channel:
-    case Opcode::statistics:
-      return take_small(opcode, at, size);
-    default:
-      return success();  // indices, which are not trusted, and records of later versions
-  }
-}
-
-Status Reader::Impl::take_small(Opcode opcode, std::uint64_t at, std::uint64_t size) {
-  if (size > kMostDefinition) {
-    complain(fmt::format("the record at byte {} exceeds the maximum length of its type", at));
-    return success();
-  }
-  const auto content = file.read(at, size);
-  if (!content) return content.error();
-  if (opcode == Opcode::header) {
-    profile = In(*content).text();
-  } else if (opcode == Opcode::statistics) {
-    take_statistics(*content);
+Status Reader::Impl::add(Part part) {
+  const bool first = parts.empty();
+  Ids ids;
+  if (first) {
+    schemas = part.schemas;
+    channels = part.channels;
   } else {
-    define(opcode, *content);
+    // Beyond what the first part's messages call their channels, defined or not.
+    const int least = counts.empty() ? 1 : counts.rbegin()->first + 1;
+    auto merged = merge_channels(part, least, schemas, channels);
+    if (!merged) return merged.error();
+    ids = *std::move(merged);
   }
+  for (const auto& [id, count] : part.counts) {
+    if (const auto channel = channel_of_recording(ids, id, first)) counts[*channel] += count;
+  }
+  if (part.total > 0) {
+    start_ns = total == 0 ? part.start_ns : std::min(start_ns, part.start_ns);
+    end_ns = std::max(end_ns, part.end_ns);
+  }
+  total += part.total;
+  parts.push_back(std::move(part));
+  channel_ids.push_back(std::move(ids));
+  for (const auto& sentence : parts.back().complaints) complain(parts.size() - 1, sentence);
   return success();
 }
 
-void Reader::Impl::define(Opcode opcode, View content) {
-  if (opcode == Opcode::schema) {
-    if (auto schema = recording::schema_of(content)) return void(schemas[schema->id] = *schema);
-  } else if (opcode == Opcode::channel) {
-    if (auto channel = channel_of(content)) return void(channels[channel->id] = *channel);
-  } else {
-    return;
+void Reader::Impl::complain(std::size_t part, const std::string& sentence) {
+  std::string text = names.empty() ? sentence : fmt::format("{}: {}", names[part], sentence);
+  if (std::ranges::find(complaints, text) == complaints.end()) {
+    complaints.push_back(std::move(text));
   }
-  complain("a schema or a channel is damaged: its messages are skipped");
-}
-
-Status Reader::Impl::take_chunk(std::uint64_t at, std::uint64_t size) {
-  const auto head = file.read(at, std::min(size, kChunkHead));
-  if (!head) return head.error();
-  if (const auto block = chunk_of(*head, at, size)) {
-    blocks.push_back(*block);
-  } else {
-    complain(fmt::format("the chunk at byte {} is damaged and skipped", at));
-  }
-  return success();
-}
-
-Status Reader::Impl::take_message(std::uint64_t at, std::uint64_t size) {
-  constexpr std::uint64_t kMessageHead = 22;  // [byte] before the data
-  const auto head = file.read(at, std::min(size, kMessageHead));
-  if (!head) return head.error();
-  const auto message = message_of(*head);
-  if (!message) {
-    complain(fmt::format("the message at byte {} is damaged and skipped", at));
-    outside = false;
-    return success();
-  }
-  const std::uint64_t time_ns = message->log_time_ns;
-  if (!outside || blocks.back().size > kMostOutside) {
-    blocks.push_back({.offset = at - kRecordHead, .start_ns = time_ns, .end_ns = time_ns});
-  }
-  auto& block = blocks.back();
-  block.size += kRecordHead + size;
-  block.uncompressed_size = block.size;
-  block.start_ns = std::min(block.start_ns, time_ns);
-  block.end_ns = std::max(block.end_ns, time_ns);
-  outside = true;
-  return success();
-}
-
-void Reader::Impl::take_statistics(View content) {
-  In in(content);
-  const auto messages = in.number<std::uint64_t>();
-  in.raw(2 + 4 * 4);  // numbers of schemas, channels, attachments, metadata, chunks
-  const auto first_ns = in.number<std::uint64_t>();
-  const auto last_ns = in.number<std::uint64_t>();
-  In map(in.raw(in.number<std::uint32_t>()));
-  std::map<std::uint16_t, std::uint64_t> by_channel;
-  while (in.good() && map.good() && map.left() > 0) {
-    const auto channel = map.number<std::uint16_t>();
-    by_channel[channel] = map.number<std::uint64_t>();
-  }
-  if (!in.good() || !map.good()) return;  // messages are counted instead
-  total = messages;
-  start_ns = first_ns;
-  end_ns = last_ns;
-  counts = std::move(by_channel);
-  statistics = true;
-}
-
-Status Reader::Impl::count_all() {
-  counts.clear();
-  total = 0;
-  start_ns = ~0ULL;
-  end_ns = 0;
-  std::vector<Block> whole;
-  for (auto& block : blocks) {
-    auto records = load(file, block);
-    if (!records && records.code() == ErrorCode::io_failed) return records.error();
-    if (!records) {
-      complain(records.error().message);
-      continue;
-    }
-    count(block, *records);
-    whole.push_back(block);
-  }
-  blocks = std::move(whole);
-  if (total == 0) start_ns = 0;
-  return success();
-}
-
-// Also finds the true first and last times: those in chunks may be wrong.
-void Reader::Impl::count(Block& block, View records) {
-  block.start_ns = ~0ULL;
-  block.end_ns = 0;
-  const bool whole = for_each_record(records, [&](Opcode opcode, View content) {
-    const auto message = opcode == Opcode::message ? message_of(content) : std::nullopt;
-    if (!message) return define(opcode, content);
-    ++counts[message->channel_id];
-    ++total;
-    block.start_ns = std::min(block.start_ns, message->log_time_ns);
-    block.end_ns = std::max(block.end_ns, message->log_time_ns);
-  });
-  if (!whole) {
-    complain(fmt::format("the chunk at byte {} is cut off", block.offset));
-  }
-  start_ns = std::min(start_ns, block.start_ns);
-  end_ns = std::max(end_ns, block.end_ns);
 }
 
 Reader::Reader(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -221,21 +121,24 @@ Reader::Reader(Reader&&) noexcept = default;
 Reader& Reader::operator=(Reader&&) noexcept = default;
 
 Result<Reader> Reader::open(const std::string& path) {
-  auto file = File::open(path);
-  if (!file) return file.error();
-  auto impl = std::make_unique<Impl>(*std::move(file));
-  const auto magic = impl->file.read(0, kMagic.size());
-  if (!magic) return magic.error();
-  if (!std::ranges::equal(*magic, kMagic)) {
-    return fail(ErrorCode::invalid_input,
-                path + " is not an MCAP recording: its first bytes are wrong");
+  const auto files = recording_files(path);
+  if (!files) return files.error();
+  auto impl = std::make_unique<Impl>();
+  impl->complaints = files->complaints;
+  for (const std::string& file : files->paths) {
+    if (files->paths.size() > 1) impl->names.push_back(file.substr(file.rfind('/') + 1));
+    auto part = Part::open(file);
+    if (!part) return part.error();
+    if (auto status = impl->add(*std::move(part)); !status) {
+      return fail(status.code(),
+                  fmt::format("{} cannot be read: {}", path, status.error().message));
+    }
   }
-  if (auto status = impl->scan(); !status) return status.error();
   return Reader(std::move(impl));
 }
 
 const std::string& Reader::profile() const {
-  return impl_->profile;
+  return impl_->parts.front().profile;
 }
 const std::map<std::uint16_t, Schema>& Reader::schemas() const {
   return impl_->schemas;
@@ -269,11 +172,17 @@ namespace {
 /// Messages of blocks that overlap in time, put in order.
 class Merge {
  public:
-  void add(std::shared_ptr<const Bytes> records, const ReadOptions& options) {
+  /// @param channel_of the recording's channel for one of these records, or none
+  template <typename ChannelOf>
+  void add(std::shared_ptr<const Bytes> records, const ReadOptions& options,
+           const ChannelOf& channel_of) {
     for_each_record(*records, [&](Opcode opcode, View content) {
       if (opcode != Opcode::message) return;
-      const auto m = message_of(content);
+      auto m = message_of(content);
       if (!m || m->log_time_ns < options.from_ns || m->log_time_ns > options.to_ns) return;
+      const std::optional<std::uint16_t> channel = channel_of(m->channel_id);
+      if (!channel) return;
+      m->channel_id = *channel;
       if (options.channels && !options.channels->contains(m->channel_id)) return;
       items_.push({*m, order_++, records});
     });
@@ -308,23 +217,31 @@ class Merge {
 
 Status Reader::read(const ReadOptions& options,
                     const std::function<bool(const MessageView&)>& take) {
-  std::vector<const Block*> blocks;
-  for (const auto& block : impl_->blocks) {
-    if (block.end_ns >= options.from_ns && block.start_ns <= options.to_ns) {
-      blocks.push_back(&block);
+  struct Place {
+    std::size_t part;
+    const Block* block;
+  };
+  std::vector<Place> places;
+  for (std::size_t part = 0; part < impl_->parts.size(); ++part) {
+    for (const auto& block : impl_->parts[part].blocks) {
+      if (block.end_ns >= options.from_ns && block.start_ns <= options.to_ns) {
+        places.push_back({part, &block});
+      }
     }
   }
-  std::ranges::stable_sort(blocks, {}, [](const Block* b) { return b->start_ns; });
+  std::ranges::stable_sort(places, {}, [](const Place& place) { return place.block->start_ns; });
   Merge merge;
-  for (const Block* block : blocks) {
-    if (!merge.give_until(block->start_ns, false, take)) return success();
-    auto records = load(impl_->file, *block);
+  for (const Place& place : places) {
+    if (!merge.give_until(place.block->start_ns, false, take)) return success();
+    auto records = load(impl_->parts[place.part].file, *place.block);
     if (!records && records.code() == ErrorCode::io_failed) return records.error();
     if (!records) {
-      impl_->complain(records.error().message);
+      impl_->complain(place.part, records.error().message);
       continue;
     }
-    merge.add(std::make_shared<const Bytes>(*std::move(records)), options);
+    const Ids& ids = impl_->channel_ids[place.part];
+    merge.add(std::make_shared<const Bytes>(*std::move(records)), options,
+              [&](std::uint16_t id) { return channel_of_recording(ids, id, place.part == 0); });
   }
   merge.give_until(0, true, take);
   return success();

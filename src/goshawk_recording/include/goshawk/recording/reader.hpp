@@ -17,12 +17,14 @@ struct ReadOptions {
   std::optional<std::set<std::uint16_t>> channels = {};  // none: all
 };
 
-/// Reads MCAP files of any writer (chunks of zstd or none). The bytes are not trusted: a length
-/// counts only as far as the file goes, an index never. A file that is cut off gives everything
-/// that is whole in it; complaints() tell.
+/// Reads MCAP files of any writer (chunks of zstd, lz4 or none), and bags of rosbag2: folders of
+/// several such files. The bytes are not trusted: a length counts only as far as the file goes, an
+/// index never. A file that is cut off gives everything that is whole in it; complaints() tell.
 class Reader {
  public:
-  /// @return io_failed if the file cannot be read, invalid_input if it is not an MCAP file
+  /// @param path a file, or a folder that holds one recording. The channels of its second file and
+  /// of those after it get new ids, unless the first has the same.
+  /// @return io_failed if a file cannot be read, invalid_input if it is not an MCAP file
   static Result<Reader> open(const std::string& path);
   ~Reader();
   Reader(Reader&&) noexcept;
