@@ -41,30 +41,4 @@ Status VoxelGrid::check() const {
   return raw.empty() ? success() : agree(raw, "raw");
 }
 
-Result<Index3> locate(const VoxelGrid& grid, const Vec3& p_map, Endpoint endpoint) {
-  const bool start = endpoint == Endpoint::start;
-  const std::string name = (start ? "start " : "goal ") + to_text(p_map);
-  if (!is_finite(p_map)) {
-    return fail(ErrorCode::invalid_input, name + " is not finite: give three numbers in metres");
-  }
-  const auto index = grid.geometry.index_of(p_map);
-  if (!index) {
-    return fail(start ? ErrorCode::start_outside : ErrorCode::goal_outside,
-                fmt::format("{} is outside the map, which spans {} to {} m", name,
-                            to_text(grid.geometry.origin_map),
-                            to_text(grid.geometry.upper_corner_map())));
-  }
-  if (!grid.grown.test(*index)) return *index;
-  if (grid.unknown_is_occupied && !grid.is_known(*index)) {
-    return fail(start ? ErrorCode::start_unknown : ErrorCode::goal_unknown,
-                name +
-                    " lies in unknown space, which counts as occupied: choose a point that was "
-                    "measured free, or treat unknown space as free");
-  }
-  return fail(start ? ErrorCode::start_occupied : ErrorCode::goal_occupied,
-              fmt::format("{} lies in an obstacle, or closer than {:.3g} m to one: choose a point "
-                          "with more clearance, or a smaller radius or margin",
-                          name, grid.inflation_m));
-}
-
 }  // namespace goshawk

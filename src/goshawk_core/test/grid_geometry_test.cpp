@@ -1,5 +1,7 @@
 #include "goshawk/core/grid_geometry.hpp"
 
+#include "goshawk/core/inflation.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -119,6 +121,79 @@ TEST(Locate, CallsAVoxelOccupiedWhereUnknownCountsAsFreeOrAllIsKnown) {
   grid.unknown_is_occupied = true;
   grid.known = {};
   EXPECT_EQ(locate(grid, p, Endpoint::goal).code(), ErrorCode::goal_occupied);
+}
+
+// A room of 40 x 40 x 20 voxels of 0.1 m, of which the right half was never measured, with a floor
+// and a pillar; grown by 0.25 m.
+VoxelGrid half_known_room(bool raw) {
+  VoxelGrid grid;
+  grid.geometry = {Vec3::Zero(), 0.1, {40, 40, 20}};
+  BitGrid occupied(grid.geometry.size, true);
+  grid.known = BitGrid(grid.geometry.size, false);
+  BitGrid blocked = occupied;
+  for (int z = 0; z < 20; ++z) {
+    for (int y = 0; y < 40; ++y) {
+      grid.known.set_run(0, 20, y, z, true);
+      blocked.set_run(20, 40, y, z, true);
+      if (z == 0) occupied.set_run(0, 20, y, z, true);
+    }
+    occupied.set({5, 20, z}, true);
+  }
+  for (int z = 0; z < 20; ++z) {
+    for (int y = 0; y < 40; ++y) {
+      for (int x = 0; x < 20; ++x) {
+        if (occupied.get({x, y, z})) blocked.set({x, y, z}, true);
+      }
+    }
+  }
+  grid.inflation_m = 0.25;
+  grid.unknown_grows = true;
+  grid.grown = inflate(blocked, grid.inflation_m, grid.geometry.resolution_m).value();
+  if (raw) grid.raw = occupied;
+  return grid;
+}
+
+TEST(Locate, SaysWhatIsTooNear) {
+  const VoxelGrid grid = half_known_room(true), without_raw = half_known_room(false);
+  const auto told = [&](const VoxelGrid& g, const Vec3& p) {
+    const auto located = locate(g, p, Endpoint::goal);
+    EXPECT_EQ(located.code(), ErrorCode::goal_occupied) << to_text(p);
+    return located ? "free" : located.error().message;
+  };
+  const auto says = [](const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+  };
+  EXPECT_PRED2(says, told(grid, {1.55, 0.55, 0.05}), "lies in an obstacle");
+  EXPECT_PRED2(says, told(grid, {1.55, 0.55, 0.25}),
+               "closer than 0.25 m to the obstacle at (1.550, 0.550, 0.050), below it");
+  EXPECT_PRED2(says, told(grid, {0.75, 2.05, 1.05}), "(0.550, 2.050, 1.050), beside it");
+  EXPECT_PRED2(says, told(grid, {1.85, 0.55, 1.05}), "closer than 0.25 m to unknown space");
+  EXPECT_FALSE(says(told(grid, {1.85, 0.55, 1.05}), "obstacle,"));
+  // Without the obstacles as measured both may be near.
+  EXPECT_PRED2(says, told(without_raw, {1.85, 0.55, 1.05}), "unknown: free); or");
+  EXPECT_PRED2(says, told(without_raw, {0.75, 2.05, 1.05}), "lies in an obstacle, or closer than");
+  EXPECT_EQ(locate(grid, {3.05, 0.55, 1.05}, Endpoint::goal).code(), ErrorCode::goal_unknown);
+  EXPECT_TRUE(locate(grid, {1.05, 0.55, 1.05}, Endpoint::goal));
+}
+
+// By the growth of obstacles alone, which inflate() knows.
+TEST(Locate, BlamesObstaclesWhereTheyBlockAndElseUnknownSpace) {
+  const VoxelGrid grid = half_known_room(true);
+  const BitGrid by_obstacles =
+      inflate(grid.raw, grid.inflation_m, grid.geometry.resolution_m).value();
+  int obstacles = 0, unknown = 0;
+  for (int k = 0; k < 20 * 40 * 20; ++k) {
+    const Index3 i{k % 20, k / 20 % 40, k / 800};  // the half that is known
+    const auto located = locate(grid, grid.geometry.center(i), Endpoint::start);
+    ASSERT_EQ(located.ok(), !grid.grown.get(i));
+    if (located) continue;
+    const bool blames_unknown =
+        located.error().message.find("to unknown space") != std::string::npos;
+    ASSERT_EQ(blames_unknown, !by_obstacles.get(i)) << located.error().message;
+    ++(blames_unknown ? unknown : obstacles);
+  }
+  EXPECT_GT(unknown, 1000);
+  EXPECT_GT(obstacles, 1000);
 }
 
 TEST(Locate, RefusesWhatIsNotFiniteAndKeepsHugeNumbersReadable) {

@@ -66,7 +66,9 @@ Status load_text(std::string_view bytes, const LoadOptions& options, MapSource& 
     const auto map = read_warframe(bytes);
     return map ? load_warframe(*map, options, source) : Status(map.error());
   }
-  auto cloud = source.format == "pcd" ? read_pcd(bytes) : read_ply(bytes);
+  auto cloud = source.format == "pcd"   ? read_pcd(bytes)
+               : source.format == "ply" ? read_ply(bytes)
+                                        : read_obj(bytes);
   return cloud ? load_cloud(*std::move(cloud), options, source) : Status(cloud.error());
 }
 
@@ -74,6 +76,10 @@ Status load_bytes(std::string_view bytes, const LoadOptions& options, MapSource&
   if (bytes.empty()) return malformed("it is empty");
   if (source.format == "bt") return load_tree(read_bt(bytes), source);
   if (source.format == "ot") return load_tree(read_ot(bytes), source);
+  if (source.format == "stl") {  // binary, as a rule: no text that a byte order mark begins
+    auto mesh = read_stl(bytes);
+    return mesh ? load_cloud(*std::move(mesh), options, source) : Status(mesh.error());
+  }
   return load_text(bytes, options, source);
 }
 
@@ -84,11 +90,11 @@ Error about(const std::string& path, Error error) {
 
 Status check_ending(const std::string& path) {
   const std::string ending = lower_case_ending(path);
-  for (const std::string_view known : {"bt", "ot", "pcd", "ply", "3dmap"}) {
+  for (const std::string_view known : {"bt", "ot", "pcd", "ply", "stl", "obj", "3dmap"}) {
     if (ending == known) return success();
   }
-  return about(
-      path, fail(ErrorCode::map_unreadable, "its name must end in .bt, .ot, .pcd, .ply or .3dmap"));
+  return about(path, fail(ErrorCode::map_unreadable,
+                          "its name must end in .bt, .ot, .pcd, .ply, .stl, .obj or .3dmap"));
 }
 
 Error no_memory() {
@@ -162,7 +168,8 @@ Result<std::vector<Vec3>> load_points(const std::string& path) {
   if (ending != "pcd" && ending != "ply") {
     return about(path, fail(ErrorCode::map_unreadable, "its name must end in .pcd or .ply"));
   }
-  auto cloud = ending == "pcd" ? read_pcd(*bytes) : read_ply(*bytes);
+  const std::string_view text = without_byte_order_mark(*bytes);
+  auto cloud = ending == "pcd" ? read_pcd(text) : read_ply(text);
   if (!cloud) return about(path, cloud.error());
   return std::move(cloud->points);
 }

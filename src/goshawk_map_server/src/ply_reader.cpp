@@ -284,11 +284,6 @@ Result<Cloud> CloudBuilder::finish() && {
                                      corners[k], cloud_.points.size()));
       }
       triangle[k] = std::uint32_t(corners[k]);
-      if (!is_finite(cloud_.points[triangle[k]])) {
-        return malformed(fmt::format("a face has the vertex {}, which is not finite: repair the "
-                                     "mesh",
-                                     triangle[k]));
-      }
     }
     cloud_.triangles.push_back(triangle);
   }

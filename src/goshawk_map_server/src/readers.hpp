@@ -37,6 +37,9 @@ struct Cloud {
 Result<Cloud> read_pcd(std::string_view bytes);
 /// Faces, strips and edges become triangles.
 Result<Cloud> read_ply(std::string_view bytes);
+Result<Cloud> read_stl(std::string_view bytes);
+/// Faces and lines become triangles.
+Result<Cloud> read_obj(std::string_view bytes);
 
 struct WarframeMap {
   Index3 size;

@@ -1,5 +1,7 @@
 #include "goshawk/path_search/ends.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -18,14 +20,24 @@ Result<Index3> find_voxel(const VoxelGrid& map, const Vec3& p_map, Endpoint endp
   return locate(map, p_map, endpoint);
 }
 
+// What a point on the very face of its voxel touches.
+std::string face_of(const VoxelGrid& map, const Vec3& p_map) {
+  const Vec3 from_lower = map.geometry.to_grid(p_map);
+  if (from_lower.z() == 0.0) {
+    return fmt::format("on the map's floor, at z = {:g} m", map.geometry.origin_map.z());
+  }
+  if (from_lower.x() == 0.0 || from_lower.y() == 0.0) return "on the map's outermost face";
+  return "on the face of a blocked voxel";
+}
+
 // A free voxel's face may be an obstacle's: no segment from a point on it clears that obstacle.
 Status check_clear_of_faces(const VoxelGrid& map, const Vec3& p_map, Endpoint endpoint) {
   if (line_is_free(map, p_map, p_map)) return success();
   const bool start = endpoint == Endpoint::start;
   return fail(start ? ErrorCode::start_occupied : ErrorCode::goal_occupied,
-              std::string(start ? "start " : "goal ") + to_text(p_map) +
-                  " lies on the face of a blocked voxel or of the map: move it a little into the "
-                  "free voxel, or use corner_rule squeeze");
+              fmt::format("{} {} lies {}: move it a little into the free voxel, or use corner_rule "
+                          "squeeze",
+                          start ? "start" : "goal", to_text(p_map), face_of(map, p_map)));
 }
 
 bool may_be_moved(ErrorCode code) {
@@ -71,8 +83,9 @@ Result<PlacedEnd> place_end(const VoxelGrid& map, CornerRule rule, const Vec3& p
   if (!(move_within_m > 0.0) || !may_be_moved(status.code())) return status.error();
   const auto free = nearest_free(map, p_map, move_within_m);
   if (!free) {
-    return fail(status.code(), status.error().message + " (no voxel within move_within_m, " +
-                                   std::to_string(move_within_m) + " m, is free)");
+    return fail(status.code(),
+                fmt::format("{} (no voxel within move_within_m, {:g} m, is free)",
+                            status.error().message, move_within_m));
   }
   const Vec3 center = map.geometry.center(*free);
   return PlacedEnd{center, End::center_of(*free), (center - p_map).norm()};

@@ -49,7 +49,7 @@ class BadMaps(CallsCase):
                              f"{name}.{ending}")
 
     def test_unknown_endings(self):
-        for name in ("map.stl", "map", "map.bt.zip", "map.BTX"):
+        for name in ("map.las", "map", "map.bt.zip", "map.BTX"):
             self.plan_on(self.file(name, b"x"), "map_unreadable", name)
 
     def test_a_map_that_was_cut_off(self):

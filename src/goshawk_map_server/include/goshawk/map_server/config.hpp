@@ -59,8 +59,8 @@ namespace detail {
 template <typename Self, typename Visitor>
 void describe_file(Self& c, Visitor& visit) {
   visit("map_file", c.map_file, "",
-        "map to load (.bt, .ot, .pcd, .ply with points or faces, .3dmap); empty: the box begins as "
-        "unknown space",
+        "map to load (.bt, .ot, .pcd, .ply, .stl, .obj, .3dmap); empty: the box begins as unknown "
+        "space",
         Anything{});
   visit("unknown", c.unknown, "",
         "space that was not measured: occupied (an obstacle that grows), blocked (an obstacle "

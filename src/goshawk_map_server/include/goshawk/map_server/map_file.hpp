@@ -50,6 +50,12 @@ struct LoadOptions {
   double scale = 1.0;  // [m] a unit of the file's coordinates
   /// [m] where the map frame's origin lies in the file's coordinates (scaled): subtracted
   Vec3 origin_file = Vec3::Zero();
+  /// [rad] how the file's axes are turned into the map's, after that: about x, then y, then z of the
+  /// map. A mesh whose y axis points up needs (pi / 2, 0, 0).
+  Vec3 turn_rad = Vec3::Zero();
+  /// Leaves out points far from all others, and occupied voxels that touch no other: noise of a
+  /// scanner. Never of a mesh.
+  bool drop_outliers = false;
   std::optional<Vec3> sensor_origin_map;  // [m] for a scan; else the file's viewpoint, or zero
   double max_range_m = 30.0;              // [m] for a scan
   std::optional<Box> box;                 // points outside are skipped, rays and faces cut
@@ -60,11 +66,12 @@ struct LoadOptions {
 struct MapSource {
   OcTreePtr tree;                   // of OctoMap files and scans, else null
   std::optional<RawVoxels> voxels;  // of all others
-  std::string format;               // "bt", "ot", "pcd", "ply" or "3dmap"
+  std::string format;               // the ending in lower case: "bt", "3dmap"
   std::int64_t points_read = 0;     // clouds and .3dmap: entries in the file
   std::int64_t triangles_read = 0;  // of a mesh
   std::int64_t points_not_finite = 0;  // skipped
   std::int64_t points_outside = 0;     // skipped: outside LoadOptions::box
+  std::int64_t outliers = 0;           // points and voxels that LoadOptions::drop_outliers left out
   std::vector<std::string> notes;      // what was assumed, or looks wrong; sentences
 };
 
@@ -80,6 +87,8 @@ Result<RawVoxels> voxelize(const MapSource& source, const VoxelizeOptions& optio
 ///   .pcd       ascii, binary, binary_compressed; fields x, y, z (float or integer) among any others
 ///   .ply       ascii, binary little and big endian; x, y, z of the element vertex; faces, strips and
 ///              edges set every voxel that they pass through
+///   .stl       text and binary: the same for its triangles
+///   .obj       the same for its faces and lines
 ///   .3dmap     Warframe voxel maps: "voxel X Y Z", then one occupied voxel a line; voxel
 ///              (0, 0, 0) has its lower corner at the origin, what is not listed is free
 ///
