@@ -1,13 +1,14 @@
-"""Tests of tools/completion.bash against a goshawk that answers known words.
+"""Tests of tools/completion.* against a goshawk that answers known words.
 
 What the real one answers is tested in goshawk_cli."""
 
 import pathlib
+import shutil
 import subprocess
 import tempfile
 import unittest
 
-COMPLETION = pathlib.Path(__file__).resolve().parent.parent / "completion.bash"
+TOOLS = pathlib.Path(__file__).resolve().parent.parent
 GOSHAWK = r"""#!/bin/bash
 printf '%s\n' "$#:$*" >> "$0.calls"
 case "$*" in
@@ -20,7 +21,7 @@ esac
 """
 
 
-class CompletionTest(unittest.TestCase):
+class CompletionCase(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
@@ -28,19 +29,28 @@ class CompletionTest(unittest.TestCase):
         self.program.write_text(GOSHAWK)
         self.program.chmod(0o755)
 
+    def run_shell(self, shell, *arguments):
+        if shutil.which(shell) is None:
+            self.skipTest(f"{shell} is not installed")
+        result = subprocess.run([shell, *arguments], capture_output=True, text=True, check=True)
+        self.assertEqual(result.stderr, "")
+        return result.stdout.split()
+
+    def calls(self):
+        return pathlib.Path(f"{self.program}.calls").read_text().splitlines()
+
+
+class Bash(CompletionCase):
     def complete(self, *words):
         script = ('source "$1"; shift; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _goshawk; '
                   'printf "%s\\n" "${COMPREPLY[@]}"')
-        result = subprocess.run(["bash", "-c", script, "bash", COMPLETION, self.program, *words],
-                                capture_output=True, text=True, check=True)
-        self.assertEqual(result.stderr, "")
-        return result.stdout.split()
+        return self.run_shell("bash", "-c", script, "bash", TOOLS / "completion.bash", self.program,
+                              *words)
 
     def test_the_program_is_asked_with_the_words_so_far(self):
         self.assertEqual(self.complete(""), ["fly", "launch", "topic"])
         self.complete("topic", "echo", "a b")
-        calls = pathlib.Path(f"{self.program}.calls").read_text().splitlines()
-        self.assertEqual(calls, ["2:complete ", "4:complete topic echo a b"])
+        self.assertEqual(self.calls(), ["2:complete ", "4:complete topic echo a b"])
 
     def test_only_what_begins_like_the_word_is_offered(self):
         self.assertEqual(self.complete("la"), ["launch"])
@@ -49,6 +59,44 @@ class CompletionTest(unittest.TestCase):
 
     def test_nothing_is_offered_if_the_program_knows_nothing(self):
         self.assertEqual(self.complete("plan", "file"), [])
+
+
+class Zsh(CompletionCase):
+    """The shell's own functions are stubs: what it is offered, it would choose from."""
+
+    def complete(self, *words):
+        script = ('compdef() { :; }; compadd() { print -l -- "${(@P)2}"; }; '
+                  '_files() { print files; }; source "$1"; shift; words=("$@"); CURRENT=$#; '
+                  '_goshawk')
+        return self.run_shell("zsh", "-f", "-c", script, "zsh", TOOLS / "completion.zsh",
+                              self.program, *words)
+
+    def test_the_program_is_asked_with_the_words_so_far(self):
+        self.assertEqual(self.complete(""), ["fly", "launch", "topic"])
+        self.assertEqual(self.complete("topic", "echo", ""), ["/odom", "/uav1/path"])
+        self.assertEqual(self.calls(), ["2:complete ", "4:complete topic echo "])
+
+    def test_files_are_offered_if_the_program_knows_nothing(self):
+        self.assertEqual(self.complete("plan", "file"), ["files"])
+
+
+class Fish(CompletionCase):
+    def complete(self, line):
+        script = f'source {TOOLS / "completion.fish"}; complete -C "{self.program} {line}"'
+        return self.run_shell("fish", "--no-config", "-c", script)
+
+    def test_the_program_is_asked_with_the_words_so_far(self):
+        self.assertEqual(self.complete("topic echo "), ["/odom", "/uav1/path"])
+        self.assertIn("4:complete topic echo ", self.calls())
+
+    def test_only_what_begins_like_the_word_is_offered(self):
+        self.assertEqual(self.complete("fly --m"), ["--map", "--margin"])
+        self.assertEqual(self.complete("la"), ["launch"])
+
+    def test_files_are_offered_if_the_program_knows_nothing(self):
+        folder = self.program.parent / "maps"
+        folder.mkdir()
+        self.assertEqual(self.complete(f"plan {folder.parent}/ma"), [f"{folder}/"])
 
 
 if __name__ == "__main__":

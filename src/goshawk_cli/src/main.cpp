@@ -51,14 +51,16 @@ void describe(Program& program) {
   add_conform(program);
   add_record(program);
   add_replay(program);
+  add_bag(program);
   add_topic(program);
   add_node(program);
+  add_interface(program);
   add_param(program);
   add_doctor(program);
   add_help(program);
 }
 
-/// For the completion of the shell: what may follow, a word a line (tools/completion.bash).
+/// For the completion of the shell: what may follow, a word a line (tools/completion.*).
 int print_completions(const Program& program, const Words& words) {
   for (const auto& word : program.complete(words)) fmt::print("{}\n", word);
   return kDone;

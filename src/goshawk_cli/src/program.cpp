@@ -113,6 +113,10 @@ int report_bug(const Console& console, const std::exception& bug) {
 
 }  // namespace
 
+std::string Verb::path() const {
+  return path_of(*app_);
+}
+
 Verb Verb::word(const std::string& name, const std::string& summary) const {
   CLI::App* below = app_->add_subcommand(name, summary)->group("Verbs");
   app_->require_subcommand(1);

@@ -25,6 +25,9 @@ class Verb {
 
   CLI::App* operator->() const { return app_; }
 
+  /// As it is called, behind the program's name: "topic echo".
+  std::string path() const;
+
   /// A word below this one.
   Verb word(const std::string& name, const std::string& summary) const;
 
@@ -39,7 +42,7 @@ class Verb {
   CLI::Option* choice(const std::string& name, std::string& value, const std::string& what,
                       Words choices) const;
 
-  /// What bash offers for the values of an option.
+  /// What a shell offers for the values of an option.
   void completes(const CLI::Option* option, Completer completer) const;
 
  private:

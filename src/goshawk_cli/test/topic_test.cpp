@@ -138,6 +138,46 @@ TEST_F(Verbs, EchoesTheLatchedMapToALateComer) {
   EXPECT_EQ(Json::parse(map.out)["grown"], "<100 elements>");
 }
 
+TEST_F(Verbs, EchoesTheNewestOfWhatALatchedTopicKeeps) {
+  const auto counts = node_->advertise<std_msgs::msg::String>("count", Qos::latched(5));
+  for (const char* text : {"one", "two", "three"}) {
+    std_msgs::msg::String message;
+    message.data(text);
+    ASSERT_TRUE(counts.publish(message));
+  }
+  EXPECT_EQ(find({"topic", "echo", "/uav1/count", "--once"}).out, "data: \"three\"\n---\n");
+  EXPECT_EQ(find({"topic", "echo", "/uav1/count", "-n", "2", "--field", "data"}).out,
+            "one\n---\ntwo\n---\n");
+}
+
+TEST_F(Verbs, EchoesAPartOfAMessage) {
+  const auto echo = [&](std::vector<std::string> more) {
+    std::vector<std::string> words{"topic", "echo", "/uav1/path", "--once"};
+    words.insert(words.end(), more.begin(), more.end());
+    return find(words);
+  };
+  EXPECT_EQ(echo({"--field", "waypoints[1].x"}).out, "1.5\n---\n");
+  EXPECT_EQ(echo({"--field", "header.frame_id"}).out, "map\n---\n");
+  EXPECT_EQ(echo({"--field", "waypoints[1]"}).out, "x: 1.5\ny: 0.0\nz: 0.0\n---\n");
+  EXPECT_EQ(echo({"--field", "waypoints", "--csv"}).out, "0.0,0.0,0.0,1.5,0.0,0.0\n");
+  EXPECT_EQ(echo({"--field", "waypoints[-1]", "--json"}).out,
+            "{\"x\":1.5,\"y\":0.0,\"z\":0.0}\n");
+  const auto wrong = run({"topic", "echo", "/uav1/path", "--field", "waypoint"});
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_THAT(wrong.err, HasSubstr("did you mean waypoints?"));
+}
+
+TEST_F(Verbs, FindsTopicsOfATypeAndTheTypeOfATopic) {
+  EXPECT_EQ(find({"topic", "type", "uav1/path"}).out, "goshawk_msgs/msg/Path\n");
+  EXPECT_EQ(find({"topic", "find", "goshawk_msgs/Path"}).out, "/uav1/path\n");
+  EXPECT_EQ(run({"topic", "find", "goshawk_msgs/msg/Corridor"}).status, 1);
+  const auto wrong = run({"topic", "find", "goshawk_msgs/msg/Pat"});
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_THAT(wrong.err, HasSubstr("goshawk_msgs/msg/Path"));
+  EXPECT_THAT(find({"topic", "info", "/uav1/path", "-v"}).out,
+              HasSubstr("\n    goshawk_msgs/msg/Path, of participant "));
+}
+
 TEST_F(Verbs, MeasuresRateDelayAndBandwidth) {
   const auto hz = find({"topic", "hz", "/uav1/path", "-n", "20", "--json"});
   EXPECT_EQ(hz.status, 0) << hz.err;
@@ -204,6 +244,20 @@ TEST_F(Verbs, ListsNodes) {
   const Json json = Json::parse(find({"node", "list", "--json"}).out);
   EXPECT_EQ(json["nodes"][0]["name"], "/uav1/planner");
   EXPECT_EQ(json["nodes"][0]["process"], "goshawk_" + std::to_string(getpid()));
+}
+
+TEST_F(Verbs, TellsWhatANodeWritesAndReads) {
+  const auto text = find({"node", "info", "uav1/planner"});
+  EXPECT_THAT(text.out, HasSubstr("Publishers: 3\n  /uav1/map/voxels  [goshawk_msgs/msg/VoxelGrid]\n"))
+      << text.err;
+  EXPECT_THAT(text.out, HasSubstr("Subscribers: 1\n  /uav1/goal  [std_msgs/msg/String]\n"));
+  const Json json = Json::parse(find({"node", "info", "/uav1/planner", "--json"}).out);
+  EXPECT_EQ(json["others"], Json::array());
+  EXPECT_EQ(json["publishers"].size(), 3U);
+  EXPECT_EQ(json["subscribers"][0]["name"], "/uav1/goal");
+  const auto wrong = run({"node", "info", "/uav1/planer", "--timeout", "1"});
+  EXPECT_EQ(wrong.status, 1);
+  EXPECT_THAT(wrong.err, HasSubstr("/uav1/planer"));
 }
 
 /// What is not there costs the whole timeout: a short one, and a longer one where the machine had
@@ -275,7 +329,7 @@ TEST(VerbsAlone, NameWhatIsWrongInACall) {
     EXPECT_THAT(outcome.out, testing::IsEmpty());
   };
   expect({"topic", "ecko", "/a"}, "did you mean echo?");
-  expect({"topic"}, "a verb is missing: goshawk topic list | info | echo");
+  expect({"topic"}, "a verb is missing: goshawk topic list | info | type | find | echo");
   expect({"topic", "echo"}, "topic is required");
   expect({"topic", "echo", "/a b"}, "is not a valid name");
   expect({"topic", "echo", "/a", "-n", "0"}, "-n");

@@ -170,6 +170,9 @@ class Examiner {
   }
 
   std::string what_came(const Answer& answer) const {
+    if (answer.outputs.empty() && answer.reports.empty()) {
+      return fmt::format(" had no answer within {:g} s (--timeout)", options_.timeout_s);
+    }
     std::string text =
         fmt::format(" had {} results and {} reports", answer.outputs.size(), answer.reports.size());
     if (!answer.reports.empty()) {

@@ -1,6 +1,7 @@
 #include "goshawk/introspection/graph.hpp"
 
 #include <algorithm>
+#include <optional>
 
 namespace goshawk::introspection {
 namespace {
@@ -23,6 +24,31 @@ NodeList list_nodes(Session& session, double timeout_s) {
   }
   std::ranges::sort(list.nodes, {}, [](const NodeInfo& n) { return std::tie(n.name, n.process); });
   return list;
+}
+
+Result<NodeDetails> node_info(Session& session, const std::string& name, double timeout_s) {
+  const auto full = full_topic_name(name);  // the same letters may stand in both
+  if (!full) return full.error();
+  const auto find = [&]() -> std::optional<runtime::ParticipantInfo> {
+    for (auto& participant : session.context().participants()) {
+      if (std::ranges::find(participant.nodes, *full) != participant.nodes.end()) {
+        return std::move(participant);
+      }
+    }
+    return {};
+  };
+  session.wait_for(timeout_s, [&] { return find().has_value(); });
+  session.settle(timeout_s);
+  const auto participant = find();
+  if (!participant) return session.no_node(*full);
+  NodeDetails details{*full, participant->name, participant->nodes, {}, {}};
+  std::erase(details.others, *full);
+  std::ranges::sort(details.others);
+  for (const auto& endpoint : session.context().endpoints()) {
+    if (endpoint.participant != participant->guid_prefix) continue;
+    (endpoint.writer ? details.publishers : details.subscribers)[endpoint.topic] = endpoint.type;
+  }
+  return details;
 }
 
 std::map<std::string, TopicSummary> list_topics(Session& session, double timeout_s) {

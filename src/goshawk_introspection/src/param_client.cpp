@@ -60,14 +60,7 @@ Error nobody_answered(const Session& session, const std::string& node) {
                     "it computing, or is it a program without parameters? What was asked may "
                     "still be done; --timeout waits longer");
   }
-  const std::string near = runtime::nearest_name(node, known);
-  return fail(ErrorCode::stage_silent,
-              "there is no node " + node + " in domain " +
-                  std::to_string(session.context().domain()) +
-                  (known.empty()  ? ", nor any other. Is something running, with the same "
-                                    "ROS_DOMAIN_ID?"
-                   : near.empty() ? "; goshawk node list shows what there is"
-                                  : "; did you mean " + near + "?"));
+  return session.no_node(node);
 }
 
 /// True once others are there, and nobody new came for so long that the one asked for is not.

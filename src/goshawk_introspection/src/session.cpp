@@ -83,6 +83,17 @@ std::vector<std::string> Session::nodes() const {
   return names;
 }
 
+Error Session::no_node(const std::string& node) const {
+  const auto known = nodes();
+  const std::string near = runtime::nearest_name(node, known);
+  return fail(ErrorCode::stage_silent,
+              fmt::format("there is no node {} in domain {}{}", node, context_->domain(),
+                          known.empty()  ? ", nor any other. Is something running, with the same "
+                                           "ROS_DOMAIN_ID?"
+                          : near.empty() ? "; goshawk node list shows what there is"
+                                         : fmt::format("; did you mean {}?", near)));
+}
+
 Error Session::no_reader(const std::string& topic, const std::string& type) const {
   for (const auto& e : endpoints_of(topic)) {
     if (!e.writer && e.type != type) {

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <functional>
 #include <set>
+#include <vector>
 
 namespace goshawk::introspection {
 namespace {
@@ -44,11 +46,10 @@ class Follower {
       : session_(session), topic_(topic), options_(options), listener_(listener) {}
 
   Status follow(const Found& found) {
-    const auto type = runtime::raw_message_type(runtime::wire_type_name(found.type));
-    session_.node().subscribe_raw(
-        topic_, type, found.qos, [this](const void* data, const runtime::MessageInfo& info) {
-          take({*static_cast<const std::vector<unsigned char>*>(data), info.received_ns});
-        });
+    if (options_.newest && found.qos.transient_local) return hand_over_newest(found);
+    subscribe(found, [this](const Bytes& bytes, const runtime::MessageInfo& info) {
+      take({bytes, info.received_ns});
+    });
     if (auto status = wait_for_first(); !status) return status;
     last_ = Steady::now();
     before_ = received_;
@@ -57,6 +58,38 @@ class Follower {
   }
 
  private:
+  using Bytes = std::vector<unsigned char>;
+
+  void subscribe(const Found& found,
+                 std::function<void(const Bytes&, const runtime::MessageInfo&)> take) {
+    const auto type = runtime::raw_message_type(runtime::wire_type_name(found.type));
+    session_.node().subscribe_raw(
+        topic_, type, found.qos,
+        [take = std::move(take)](const void* data, const runtime::MessageInfo& info) {
+          take(*static_cast<const Bytes*>(data), info);
+        });
+  }
+
+  // What writers keep comes at once: when nothing has come for a moment, all of it is there.
+  Status hand_over_newest(const Found& found) {
+    constexpr std::chrono::milliseconds kMoment{200};
+    constexpr double kLongest_s = 1.0;  // the topic may be written all the time
+    Bytes newest;
+    runtime::MessageInfo newest_info;
+    subscribe(found, [&](const Bytes& bytes, const runtime::MessageInfo& info) {
+      ++received_;
+      last_ = Steady::now();
+      if (received_ > 1 && info.sent_ns < newest_info.sent_ns) return;
+      newest = bytes;
+      newest_info = info;
+    });
+    if (auto status = wait_for_first(); !status) return status;
+    if (received_ == 0) return success();
+    session_.wait_for(kLongest_s, [&] { return Steady::now() - last_ > kMoment; });
+    (void)listener_.message({newest, newest_info.received_ns});
+    return success();
+  }
+
   void take(const RawMessage& message) {
     if (done_) return;
     ++received_;

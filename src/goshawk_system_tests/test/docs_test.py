@@ -26,6 +26,23 @@ def starts_all(text):
                                      for stage in named.group(1).split(", "))
 
 
+def reading_order():
+    """The pages as the README names them, which is the order in which a reader meets them."""
+    named = re.findall(r"\]\((docs/\w+\.md)\)", (SOURCE / "README.md").read_text(encoding="utf-8"))
+    return [SOURCE / "README.md", *dict.fromkeys(SOURCE / name for name in named)]
+
+
+def made_by(line):
+    """The files and folders that a command line leaves behind."""
+    return set(re.findall(r"(?:-o|--output|--save|--log-dir|goshawk world|secure init) (\S+)", line))
+
+
+def used_by(line):
+    """The files and folders that a command line names: what looks like a path or a file."""
+    words = [word.rpartition(":=")[2] for word in line.split()[1:]]
+    return {word for word in words if re.fullmatch(r"/tmp/\S+|[\w./]+\.(bt|pcd|ply|mcap|yaml)", word)}
+
+
 def command_lines(path):
     """Indented lines that begin with tools/goshawk or tools/fly, with or without a prompt, and
     the exports that stand in the same block before them."""
@@ -70,6 +87,24 @@ class Pages(SystemTest):
                     self.assertTrue((page.parent / target).exists())
 
 
+class Order(SystemTest):
+    def test_every_page_is_named_by_the_readme(self):
+        self.assertEqual({page.name for page in PAGES} - {page.name for page in reading_order()},
+                         set())
+
+    def test_what_a_page_uses_was_made_before(self):
+        """By a line above, or by a page that comes before, in an empty folder."""
+        made = set()
+        for page in reading_order():
+            for line, _ in command_lines(page):
+                made |= made_by(line)
+                for name in used_by(line):
+                    with self.subTest(page=page.name, line=line):
+                        self.assertTrue(any(name == there or name.startswith(f"{there}/")
+                                            for there in made | {"/path/to"}),
+                                        f"nothing made {name}")
+
+
 class Commands(SystemTest):
     """Each runs as it stands, in a folder of its own, with the installed programs."""
 
@@ -82,8 +117,6 @@ class Commands(SystemTest):
             script = tools / name
             script.write_text(f'#!/bin/sh\nexec {shlex.quote(harness.GOSHAWK)} {words}"$@"\n')
             script.chmod(0o755)
-        parameters = self.sandbox.folder / "my.yaml"
-        parameters.write_text("path_search:\n  ros__parameters:\n    planner: astar\n")
 
     def environment(self, name, exports):
         """A page's domain is an example. Tools look at the live stages; what starts stages does
@@ -147,9 +180,12 @@ class Commands(SystemTest):
         Stack(self.sandbox).wait_ready()
         lines = {line: (page.name, exports) for page in PAGES
                  for line, exports in command_lines(page)
-                 if "my_map" not in line and "/path/to" not in line}
+                 if "/path/to" not in line}
         note(f"{len(lines)} command lines")
         self.assertGreater(len(lines), 8)
+        # Worlds come first: flights are made in them.
+        worlds = {line: lines.pop(line) for line in list(lines) if "goshawk world" in line}
+        faults = self.faults_of(worlds)
         # Flights take their time, and need little of the machine's: the others run meanwhile, and
         # those that look at what a flight left afterwards.
         flights = {line: lines[line] for line in lines
@@ -161,7 +197,7 @@ class Commands(SystemTest):
         others = {line: lines[line] for line in lines if line not in flights | after}
         with concurrent.futures.ThreadPoolExecutor() as pool:
             flown = pool.submit(self.faults_of, flights)
-            faults = {**self.faults_of(others), **flown.result()}
+            faults |= {**self.faults_of(others), **flown.result()}
         faults.update(self.faults_of(after))
         for (page, line), fault in faults.items():
             with self.subTest(page=page, line=line):

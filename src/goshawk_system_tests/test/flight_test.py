@@ -162,14 +162,35 @@ class RealMapFlight(FlightCase):
 class FlightThatFails(FlightCase):
     def test_a_goal_that_cannot_be_reached_ends_with_its_reason(self):
         folder = self.sandbox.folder / "out"
-        outcome = self.sandbox.goshawk("fly", "--json", "--output", folder, "--goal", "3,8,2",
-                                       "--goal", "100,0,0", timeout_s=60)
+        # The second goal lies outside of what this launch's search may use; fly itself sees it
+        # free in the map, and starts.
+        launch = self.sandbox.folder / "boxed.yaml"
+        stages = ["map_server", "corridor_builder", "trajectory_optimizer", "navigator", "tracker",
+                  "simulator", "flight_check"]
+        launch.write_text("stages:\n  - {component: path_search, params: {search_box: "
+                          "'0,-1,0,6,7,4'}}\n" +
+                          "".join(f"  - component: {stage}\n" for stage in stages))
+        outcome = self.sandbox.goshawk("fly", "--json", "--launch", launch, "--output", folder,
+                                       "--goal", "3.5,6.1,1.1", "--goal", "3,8,2", timeout_s=60)
         self.assertEqual(outcome.status, 1, str(outcome))
         flight = self.json_object(outcome)
         self.assertEqual((flight["ok"], flight["code"], flight["verdict"]),
                          (False, "goal_outside", "failed"))
-        self.assertIn("100", flight["message"])
+        self.assertIn("cut by search_box", flight["message"])
         self.assertEqual([leg["arrived"] for leg in flight["legs"]], [True, False])
+
+    def test_ends_that_no_plan_can_have_are_refused_before_anything_starts(self):
+        folder = self.sandbox.folder / "out"
+        for arguments, status, code in [
+                (["--goal", "3,8,2", "--goal", "100,100,100"], 1, "goal_outside"),
+                (["--start", "100,0,1"], 1, "start_outside"),
+                (["--goal", "3,8,2", "-p", "path_search:move_within_m:=-1"], 2,
+                 "invalid_parameter")]:
+            outcome = self.sandbox.goshawk("fly", "--json", "--output", folder, *arguments,
+                                           timeout_s=20)
+            self.assertEqual(outcome.status, status, str(outcome))
+            self.assertEqual(self.json_object(outcome)["code"], code)
+            self.assertFalse(folder.exists())
 
 
 if __name__ == "__main__":

@@ -9,10 +9,11 @@ from calls_case import DONE, NOT_DONE, WRONG_CALL, CallsCase
 ALL_VERBS = ["plan", "fly", "check", "world", "campaign", "launch", "view", "run", "bench plan",
              "bench search", "bench scenario", "bench stage", "bench dds", "bench corridor",
              "bench trajectory", "bench updates", "bench tracking", "bench map", "bench sensors",
-             "conform", "record", "replay",
-             "topic list", "topic info", "topic echo", "topic hz", "topic delay", "topic bw", "topic pub",
-             "node list", "param list", "param get", "param set", "param describe", "param dump",
-             "doctor", "secure init"]
+             "conform", "record", "replay", "bag record", "bag play", "bag info",
+             "interface list", "interface show", "topic list", "topic info", "topic type",
+             "topic find", "topic echo", "topic hz", "topic delay", "topic bw", "topic pub",
+             "node list", "node info", "param list", "param get", "param set", "param describe",
+             "param dump", "doctor", "secure init"]
 
 
 class BadCalls(CallsCase):
@@ -65,7 +66,12 @@ class BadCalls(CallsCase):
                 (["record", "a b"], WRONG_CALL, "invalid_parameter"),
                 (["replay", "/no.mcap"], NOT_DONE, "io_failed"),
                 (["topic", "echo", "/a b"], WRONG_CALL, "invalid_parameter"),
+                (["bag", "play", "/no.mcap"], NOT_DONE, "io_failed"),
+                (["bag", "info", "/no.mcap"], NOT_DONE, "io_failed"),
+                (["interface", "show", "goshawk_msgs/msg/Pth"], WRONG_CALL, "invalid_parameter"),
                 (["node", "list", "--timeout", "0.2"], NOT_DONE, "stage_silent"),
+                (["node", "info", "/a", "--timeout", "0.2"], NOT_DONE, "stage_silent"),
+                (["node", "info", "a b"], WRONG_CALL, "invalid_parameter"),
                 (["param", "describe", "traker"], WRONG_CALL, "invalid_parameter"),
                 (["fly", "--launch", "flihgt", "--output", self.sandbox.folder / "out"],
                  WRONG_CALL, "invalid_parameter"),
@@ -92,7 +98,7 @@ class BadCalls(CallsCase):
 
     def test_help_shows_examples_of_its_own_options(self):
         for verb in ALL_VERBS:
-            if verb in ("topic list", "node list", "doctor"):
+            if verb in ("topic list", "node list", "interface list", "doctor"):
                 continue  # nothing to show
             with self.subTest(verb=verb):
                 text = self.help_of(verb)
@@ -108,7 +114,7 @@ class BadCalls(CallsCase):
         return self.sandbox.goshawk("complete", *words, timeout_s=20).out.split()
 
     def test_every_verb_is_among_those_that_are_tested(self):
-        for group in ("bench", "topic", "node", "param", "secure"):
+        for group in ("bag", "bench", "interface", "topic", "node", "param", "secure"):
             words = {w for w in self.complete(group, "") if not w.startswith("-")}
             self.assertTrue(words)
             self.assertLessEqual({f"{group} {w}" for w in words}, set(ALL_VERBS))

@@ -6,7 +6,9 @@
 #include <filesystem>
 
 #include "goshawk/map_server/octree.hpp"
+#include "goshawk/path_search/ends.hpp"
 #include "goshawk/worlds/world.hpp"
+#include "program.hpp"
 
 namespace goshawk::cli {
 namespace {
@@ -21,6 +23,40 @@ worlds::WorldSpec world_of(const FlyOptions& o) {
   return spec;
 }
 
+// The parameters of the stages that plan, as the flight will have them.
+Result<PlanningConfig> read_config(const FlyOptions& o) {
+  Words words{"--ros-args"};
+  for (const auto& parameter : o.stage_parameters) words.insert(words.end(), {"-p", parameter});
+  const auto more = runtime::RosArgs::extract(words);
+  if (!more) return fail(ErrorCode::invalid_parameter, more.error().message);
+  runtime::RosArgs args = o.map.ros_args();
+  args.overrides.insert(args.overrides.end(), more->overrides.begin(), more->overrides.end());
+  return PlanningConfig::read(args);
+}
+
+// A vehicle that stands in a wall cannot even hover, and a goal that no plan can end at is told
+// before anything starts. As the search would, a start is moved within move_within_m.
+Status place_ends(const PlanningConfig& config, const VoxelGrid& grid, bool all_goals, Tour& tour,
+                  std::vector<std::string>& notes) {
+  const auto place = [&](const Vec3& p_map, Endpoint endpoint) {
+    return path_search::place_end(grid, config.search.corner_rule, p_map, endpoint,
+                                  config.search.move_within_m);
+  };
+  const auto start = place(tour.start_map, Endpoint::start);
+  if (!start) return start.error();
+  if (start->moved_m > 0.0) {
+    notes.push_back(fmt::format("the vehicle begins at {}, {:.2f} m from {}, which is not free",
+                                to_text(start->at_map), start->moved_m, to_text(tour.start_map)));
+    tour.start_map = start->at_map;
+  }
+  for (const Vec3& goal : tour.goals_map) {
+    if (const auto placed = place(goal, Endpoint::goal); !placed && all_goals) {
+      return placed.error();
+    }
+  }
+  return success();
+}
+
 Result<Tour> make_tour(const FlyOptions& o, const PlanningConfig& config, const LoadedMap& map) {
   if (o.random > 0) {
     auto search = path_search::PathSearch::create(config.search);
@@ -33,9 +69,6 @@ Result<Tour> make_tour(const FlyOptions& o, const PlanningConfig& config, const 
   }
   Tour tour{o.start_map.value_or(kDefaultStart_map), o.goals_map};
   if (tour.goals_map.empty()) tour.goals_map = {kDefaultGoal_map};
-  // A vehicle that stands in a wall cannot even hover.
-  auto located = locate(*map.grown, tour.start_map, Endpoint::start);
-  if (!located) return located.error();
   return tour;
 }
 
@@ -55,13 +88,19 @@ Result<Preparation> prepare(const FlyOptions& o) {
   if (!(o.timeout_s > 0.0)) {
     return fail(ErrorCode::invalid_parameter, "--timeout must be above 0");
   }
-  auto config = PlanningConfig::read(o.map.ros_args());
+  auto config = read_config(o);
   if (!config) return config.error();
   auto map = load_map(*config, world_of(o));
   if (!map) return map.error();
   auto tour = make_tour(o, *config, *map);
   if (!tour) return tour.error();
-  return Preparation{*std::move(config), *std::move(map), *std::move(tour), limits};
+  std::vector<std::string> notes;
+  for (const auto& note : map->notes) notes.push_back("map: " + note);
+  if (auto status = place_ends(*config, *map->grown, !o.keep_going, *tour, notes); !status) {
+    return status.error();
+  }
+  return Preparation{*std::move(config), *std::move(map), *std::move(tour), limits,
+                     std::move(notes)};
 }
 
 Result<std::string> make_flight_folder(const FlyOptions& o, const Preparation& p) {

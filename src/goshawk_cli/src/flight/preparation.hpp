@@ -12,10 +12,11 @@ struct Preparation {
   LoadedMap map;
   Tour tour;
   Limits limits;
+  std::vector<std::string> notes;  // sentences: what looks wrong about the map, what was moved
 };
 
 /// @return invalid_parameter, invalid_limits, why the map cannot be read, or why the vehicle cannot
-/// hover at its start
+/// hover at its start, or at a goal (unless it keeps going to the next one)
 Result<Preparation> prepare(const FlyOptions& options);
 
 /// Makes the flight folder with the map in it as world.bt.

@@ -14,7 +14,7 @@ int run_fly(const FlyOptions& options, const Console& console) {
   const introspection::Interruptible interruptible;
   const auto preparation = prepare(options);
   if (!preparation) return console.failed(preparation.error());
-  for (const std::string& note : preparation->map.notes) console.say("map: " + note);
+  for (const std::string& note : preparation->notes) console.say(note);
   const auto summary = fly(options, *preparation, [](const std::string& sentence) {
     fmt::print(stderr, "{}\n", sentence);
   });

@@ -63,7 +63,10 @@ int run_record(RecordCall o, const Console& console) {
 }  // namespace
 
 void add_record(Program& program) {
-  const Verb verb = program.verb("record", "record topics to an MCAP file, until Ctrl-C");
+  describe_record(program.verb("record", "record topics to an MCAP file, until Ctrl-C"));
+}
+
+void describe_record(const Verb& verb) {
   auto o = std::make_shared<RecordCall>();
   auto& r = o->record;
   verb.completes(
@@ -85,10 +88,11 @@ void add_record(Program& program) {
   verb->footer(
       "What is recorded is in the file within a second, and stays readable whatever happens to\n"
       "this process. Foxglove and ROS 2's tools open the file.\n\n"
-      "Examples:\n"
-      "  goshawk record\n"
-      "  goshawk record /odom /uav1/* -o odom.mcap --duration 60\n"
-      "  goshawk record -x /map/voxels");
+      "Examples:\n" +
+      fmt::format("  goshawk {0}\n"
+                  "  goshawk {0} /odom /uav1/* -o odom.mcap --duration 60\n"
+                  "  goshawk {0} -x /map/voxels",
+                  verb.path()));
   verb.runs([o](const Console& console) { return run_record(*o, console); });
 }
 

@@ -64,7 +64,12 @@ int run_replay(const ReplayCall& o, const Console& console) {
   const auto say = [&](const std::string& sentence) { console.say(sentence); };
   auto reader = recording::Reader::open(file);
   if (!reader) return console.not_done(reader.error());
-  for (const auto& complaint : reader->complaints()) say(file + ": " + complaint);
+  const auto& complaints = reader->complaints();
+  if (reader->message_count() == 0 && !complaints.empty()) {
+    return console.not_done({ErrorCode::invalid_input,
+                             fmt::format("no message of {} can be read: {}", file, complaints[0])});
+  }
+  for (const auto& complaint : complaints) say(file + ": " + complaint);
   if (o.list) return list_recording(*reader, file, console);
   const auto channels = recording::choose_channels(*reader, o.replay, say);
   if (!channels) return console.failed(channels.error());
@@ -94,13 +99,21 @@ void add_times(const Verb& verb, recording::ReplayOptions& r) {
   verb->add_flag("--hold", r.hold, "stay after the end, so that latched topics can be read");
 }
 
+void add_file(const Verb& verb, recording::ReplayOptions& r) {
+  verb->add_option("file", r.file, "an MCAP recording, or a folder with one (of rosbag2, too)")
+      ->required();
+}
+
 }  // namespace
 
 void add_replay(Program& program) {
-  const Verb verb = program.verb("replay", "play a recording over DDS, or list what is in it");
+  describe_replay(program.verb("replay", "play a recording over DDS, or list what is in it"));
+}
+
+void describe_replay(const Verb& verb) {
   auto o = std::make_shared<ReplayCall>();
   auto& r = o->replay;
-  verb->add_option("file", r.file, "an MCAP recording")->required();
+  add_file(verb, r);
   verb->add_option("-t,--topics", r.topics, "names, or beginnings like /uav1/* (default: all)");
   add_times(verb, r);
   verb->add_option("--lock-step", r.lock_step,
@@ -113,10 +126,19 @@ void add_replay(Program& program) {
   verb->add_flag("--list", o->list, "only say what is in the file");
   verb->add_flag("--print", o->print, "only print the messages, a line of JSON each");
   verb->footer(
-      "Examples:\n"
-      "  goshawk replay flight.mcap --list\n"
-      "  goshawk replay flight.mcap --rate 0.5 --loop --clock\n"
-      "  goshawk replay flight.mcap --topics /plan_request /map/* --restamp");
+      fmt::format("Examples:\n"
+                  "  goshawk {0} flight.mcap --list\n"
+                  "  goshawk {0} flight.mcap --rate 0.5 --loop --clock\n"
+                  "  goshawk {0} flight.mcap --topics /plan_request /map/* --restamp",
+                  verb.path()));
+  verb.runs([o](const Console& console) { return run_replay(*o, console); });
+}
+
+void describe_recording_info(const Verb& verb) {
+  auto o = std::make_shared<ReplayCall>();
+  o->list = true;
+  add_file(verb, o->replay);
+  verb->footer(fmt::format("Example:\n  goshawk {} flight.mcap", verb.path()));
   verb.runs([o](const Console& console) { return run_replay(*o, console); });
 }
 

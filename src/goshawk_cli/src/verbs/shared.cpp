@@ -1,6 +1,7 @@
 #include <filesystem>
 #include <set>
 
+#include "goshawk/introspection/schema.hpp"
 #include "goshawk/introspection/session.hpp"
 #include "goshawk/runtime/component.hpp"
 #include "process.hpp"
@@ -15,7 +16,7 @@ constexpr double kCompletion_s = 1.0;  // who presses a key does not wait longer
 
 void add_map_options(const Verb& verb, MapOptions& o) {
   verb->add_option("--map", o.map,
-                   "map file: .bt, .ot, .pcd, .ply, .3dmap (default: a made world)");
+                   "map file: .bt, .ot, .pcd, .ply, .stl, .obj, .3dmap (default: a made world)");
   auto* unknown = verb->add_option("--unknown", o.unknown,
                                    "space never measured: occupied (default), blocked, free");
   verb.completes(unknown, [](const Words&) { return Words{"occupied", "blocked", "free"}; });
@@ -33,7 +34,7 @@ void add_map_options(const Verb& verb, MapOptions& o) {
   verb->add_option("--radius", o.radius, "[m] radius of the vehicle (default 0.15)");
   verb->add_option("--margin", o.margin, "[m] kept for the tracking error (default 0.05)");
   verb->add_option("--resolution", o.resolution,
-                   "[m] voxel edge for clouds and .3dmap (default 0.2)");
+                   "[m] voxel edge for clouds, meshes and .3dmap (default 0.2)");
   verb->add_option("--params-file", o.params_files, "file of parameters as in ROS 2; may repeat");
 }
 
@@ -58,6 +59,12 @@ Words topic_names(const Words&) {
     for (const auto& e : (*session)->context().endpoints()) names.insert(e.topic);
   }
   return {names.begin(), names.end()};
+}
+
+Words type_names(const Words&) {
+  Words names;
+  for (const auto& type : introspection::all_types()) names.emplace_back(type.name);
+  return names;
 }
 
 Words node_names(const Words&) {

@@ -144,12 +144,6 @@ int pub(PubOptions o, const Console& console) {
   return publish_message(**session, *writer, *bytes, o, console);
 }
 
-Words type_names() {
-  Words names;
-  for (const auto& type : introspection::all_types()) names.emplace_back(type.name);
-  return names;
-}
-
 }  // namespace
 
 void add_topic_pub(const Verb& topic) {
@@ -158,7 +152,7 @@ void add_topic_pub(const Verb& topic) {
   auto* name = verb->add_option("topic", o->topic, "its name")->required();
   verb.completes(name, topic_names);
   auto* type = verb->add_option("type", o->type, "as goshawk_msgs/msg/Path")->required();
-  verb.completes(type, [](const Words&) { return type_names(); });
+  verb.completes(type, type_names);
   verb->add_option("message", o->message,
                    "JSON or YAML; fields left out are zero or empty. -: a message a line, from "
                    "standard input");

@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <optional>
 
 #include "goshawk/introspection/codec.hpp"
+#include "goshawk/introspection/field_path.hpp"
 #include "goshawk/introspection/meters.hpp"
 #include "goshawk/introspection/text.hpp"
 #include "goshawk/introspection/topic_reader.hpp"
@@ -28,23 +30,34 @@ struct EchoOptions {
   ReadOptions read;
   bool once = false;
   bool short_arrays = false;
+  bool csv = false;
+  std::string field;  // empty: the whole message
 };
 
-void print_message(const introspection::Type& type, Json message, const EchoOptions& o,
+/// A message, or the part of it that was asked for. @param type of that part, if it is a structure
+std::string part_as_text(const introspection::Type* type, const Json& part, bool csv) {
+  if (csv) return introspection::to_csv(part) + "\n";
+  if (type != nullptr) return introspection::to_yaml(*type, part) + "---\n";
+  return (part.is_string() ? part.get<std::string>() : introspection::to_line(part)) + "\n---\n";
+}
+
+void print_message(const introspection::FieldPath& path, const Json& message, const EchoOptions& o,
                    const Console& console) {
-  if (o.short_arrays) introspection::shorten_arrays(message);
-  if (console.json()) {
-    console.print_line(message);
-  } else {
-    fmt::print("{}---\n", introspection::to_yaml(type, message));
-    std::fflush(stdout);
-  }
+  const Json* found = path.find(message);
+  if (found == nullptr) return console.say(o.field + ": this message's list is too short");
+  Json part = *found;
+  if (o.short_arrays) introspection::shorten_arrays(part);
+  if (console.json()) return console.print_line(part);
+  fmt::print("{}", part_as_text(path.type(), part, o.csv));
+  std::fflush(stdout);
 }
 
 int echo(EchoOptions o, const Console& console) {
   if (o.once) o.read.count = 1;
+  o.read.newest = o.once;
   o.read.patient = o.read.count == 0;
   const introspection::Type* type = nullptr;
+  std::optional<introspection::FieldPath> path;
   TopicListener listener;
   listener.begin = [&](const std::string& name) -> Status {
     auto found = introspection::find_type(name);
@@ -53,12 +66,15 @@ int echo(EchoOptions o, const Console& console) {
                   found.error().message + " (hz and bw work with any)");
     }
     type = *found;
+    auto parsed = introspection::FieldPath::parse(*type, o.field);
+    if (!parsed) return parsed.error();
+    path = *std::move(parsed);
     return success();
   };
   listener.message = [&](const RawMessage& message) {
     auto json = introspection::cdr_to_json(*type, message.bytes);
     if (json) {
-      print_message(*type, *std::move(json), o, console);
+      print_message(*path, *json, o, console);
     } else {
       console.say(json.error().message);
     }
@@ -172,14 +188,19 @@ void add_topic_echo(const Verb& topic) {
   const Verb verb = topic.word("echo", "print messages");
   auto o = std::make_shared<EchoOptions>();
   add_topic_name(verb, o->read);
-  auto* once = verb->add_flag("--once", o->once, "one message, then end");
+  auto* once = verb->add_flag("--once", o->once, "one message, then end; of a latched topic the newest");
   add_count(verb, o->read)->excludes(once);
-  verb->add_flag("--no-arr", o->short_arrays, "long lists as their length");
+  auto* short_arrays =
+      verb->add_flag("--no-arr", o->short_arrays, "long lists as their length");
+  verb->add_option("--field", o->field, "only this part, as pose.pose.position or polytopes[0].b");
+  verb->add_flag("--csv", o->csv, "the values of a message in a line, with commas between")
+      ->excludes(short_arrays);
   add_timeout(verb, o->read.timeout_s);
   verb->footer(
       "Examples:\n"
       "  goshawk topic echo /stage_report\n"
       "  goshawk topic echo /map/voxels --once --no-arr\n"
+      "  goshawk topic echo /odom --field pose.pose.position --csv -n 100 > track.csv\n"
       "  goshawk topic echo /odom --json -n 100 > odom.jsonl");
   verb.runs([o](const Console& console) { return echo(*o, console); });
 }

@@ -20,10 +20,17 @@ void add_bench(Program& program);
 void add_conform(Program& program);
 void add_record(Program& program);
 void add_replay(Program& program);
+void add_bag(Program& program);
+void add_interface(Program& program);
 void add_topic(Program& program);
 void add_node(Program& program);
 void add_param(Program& program);
 void add_doctor(Program& program);
+
+/// What `bag record`, `bag play` and `bag info` share with `record` and `replay`.
+void describe_record(const Verb& verb);
+void describe_replay(const Verb& verb);
+void describe_recording_info(const Verb& verb);
 
 /// Options that several verbs share.
 void add_map_options(const Verb& verb, MapOptions& options);
@@ -35,6 +42,7 @@ void add_timeout(const Verb& verb, double& timeout_s);
 Words component_names(const Words& before);
 Words launch_files(const Words& before);
 Words topic_names(const Words& before);
+Words type_names(const Words& before);  // of messages, all that idl/ has
 Words node_names(const Words& before);
 
 }  // namespace goshawk::cli

@@ -1,7 +1,10 @@
 #include <fmt/format.h>
 
+#include <numbers>
+
 #include "goshawk/core/inflation.hpp"
 #include "goshawk/map_server/map_file.hpp"
+#include "goshawk/map_server/map_summary.hpp"
 #include "goshawk/map_server/octree.hpp"
 #include "goshawk/map_server/voxel_map.hpp"
 #include "goshawk/worlds/world.hpp"
@@ -20,6 +23,7 @@ struct WorldOptions {
   std::string convert;
   map_server::LoadOptions load;           // of the map to convert
   std::optional<Vec3> lower_m, upper_m;   // of the box that it is cut to
+  Vec3 turn_deg = Vec3::Zero();
   std::string output;
 };
 
@@ -28,6 +32,7 @@ struct Made {
   BitGrid occupied;
   BitGrid known;  // empty: all
   std::string kind;
+  std::string read;  // of a converted map: what was read of it
 };
 
 /// The default world keeps its start and goal free and is padded for them; another size has neither
@@ -46,6 +51,7 @@ worlds::WorldSpec spec_of(const WorldOptions& o) {
 Result<Made> convert(const WorldOptions& o, const Console& console) {
   map_server::LoadOptions options = o.load;
   options.resolution_m = o.spec.resolution_m;
+  options.turn_rad = std::numbers::pi / 180.0 * o.turn_deg;
   if (o.lower_m.has_value() != o.upper_m.has_value()) {
     return fail(ErrorCode::invalid_parameter, "--lower and --upper make a box: give both");
   }
@@ -55,14 +61,16 @@ Result<Made> convert(const WorldOptions& o, const Console& console) {
   for (const std::string& note : source->notes) console.say(o.convert + ": " + note);
   auto raw = map_server::voxelize(*source, {.box = options.box});
   if (!raw) return raw.error();
-  return Made{raw->geometry, std::move(raw->occupied), std::move(raw->known), source->format};
+  std::string read = map_server::summarise(*source, *raw);
+  return Made{raw->geometry, std::move(raw->occupied), std::move(raw->known), source->format,
+              std::move(read)};
 }
 
 Result<Made> make(const WorldOptions& o, const Console& console) {
   if (o.convert.empty()) {
     auto world = worlds::make_world(spec_of(o));
     if (!world) return world.error();
-    return Made{world->geometry, std::move(world->occupied), {}, o.spec.kind};
+    return Made{world->geometry, std::move(world->occupied), {}, o.spec.kind, {}};
   }
   return convert(o, console);
 }
@@ -74,6 +82,7 @@ Json describe(const Made& made, const WorldOptions& o, double grown_ratio) {
   object.update({{"file", o.output},
                  {"kind", made.kind},
                  {"seed", o.convert.empty() ? Json(o.spec.seed) : Json(nullptr)},
+                 {"read", made.read.empty() ? Json(nullptr) : Json(made.read)},
                  {"resolution_m", g.resolution_m},
                  {"size_voxels", {g.size.x, g.size.y, g.size.z}},
                  {"origin_m", to_json(g.origin_map)},
@@ -96,11 +105,27 @@ int run_world(const WorldOptions& o, const Console& console) {
   if (console.json()) {
     console.print(describe(*made, o, ratio));
   } else {
+    if (!made->read.empty()) fmt::print("{}: {}\n", o.convert, made->read);
     fmt::print("{}: {} voxels of {:g} m, {} occupied, {:.1f} % blocked with an inflation of {:g} m\n",
                o.output, to_text(made->geometry.size), made->geometry.resolution_m,
                made->occupied.count(), 100.0 * ratio, o.spec.inflation_m);
   }
   return kDone;
+}
+
+void add_convert_options(const Verb& verb, WorldOptions& o) {
+  add_point(verb, "--lower", o.lower_m, "[m] with --convert: lower corner of the box to cut to");
+  add_point(verb, "--upper", o.upper_m, "[m] with --convert: its upper corner");
+  verb->add_option("--scale", o.load.scale,
+                   "[m] with --convert: a unit of the file's coordinates (0.001: millimetres)");
+  add_point(verb, "--cloud-origin", o.load.origin_file,
+            "[m] with --convert: subtracted from every point");
+  add_point(verb, "--turn", o.turn_deg,
+            "[degrees] with --convert: then turned about the map's x, y and z, in this order; 90,0,0 "
+            "for a mesh whose y axis points up");
+  verb->add_flag("--drop-outliers", o.load.drop_outliers,
+                 "with --convert: leave out points far from all others, and voxels that touch no "
+                 "other");
 }
 
 }  // namespace
@@ -127,17 +152,13 @@ void add_world(Program& program) {
   add_points(verb, "--keep-free", o->keep_free,
              "[m] point that stays free after inflation; may repeat");
   verb->add_option("--convert", o->convert,
-                   "convert this map instead: .bt, .ot, .pcd, .ply, .3dmap");
-  add_point(verb, "--lower", o->lower_m, "[m] with --convert: lower corner of the box to cut to");
-  add_point(verb, "--upper", o->upper_m, "[m] with --convert: its upper corner");
-  verb->add_option("--scale", o->load.scale,
-                   "[m] with --convert: a unit of the cloud's coordinates (0.001: millimetres)");
-  add_point(verb, "--cloud-origin", o->load.origin_file,
-            "[m] with --convert: subtracted from every point of the cloud");
+                   "convert this map instead: .bt, .ot, .pcd, .ply, .stl, .obj, .3dmap");
+  add_convert_options(verb, *o);
   verb->footer(
       "Examples:\n"
       "  goshawk world forest.bt --kind forest --size 20,20,5 --density 0.2 --seed 7\n"
-      "  goshawk world office.bt --convert scan.pcd --resolution 0.1");
+      "  goshawk world office.bt --convert scan.pcd --resolution 0.1 --drop-outliers\n"
+      "  goshawk world hall.bt --convert hall.obj --scale 0.001 --turn 90,0,0");
   verb.runs([o](const Console& console) { return run_world(*o, console); });
 }
 

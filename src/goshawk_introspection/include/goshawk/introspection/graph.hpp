@@ -21,6 +21,18 @@ struct NodeList {
 };
 NodeList list_nodes(Session& session, double timeout_s);
 
+/// A node, and what its process writes and reads: DDS tells the process of a writer, not the node.
+struct NodeDetails {
+  std::string name;     // full
+  std::string process;  // name of its participant
+  std::vector<std::string> others;  // nodes of the same process
+  std::map<std::string, std::string> publishers, subscribers;  // topic to type
+};
+
+/// @param name full, or without its leading '/'
+/// @return invalid_parameter for what is not a name, stage_silent if the node does not appear
+Result<NodeDetails> node_info(Session& session, const std::string& name, double timeout_s);
+
 struct TopicSummary {
   std::set<std::string> types;
   int publishers = 0;

@@ -33,7 +33,9 @@ class Session {
   /// For a topic that does not exist: invalid_parameter that names the nearest one, or
   /// stage_silent.
   Error no_topic(const std::string& topic, double timeout_s) const;
-  /// For a topic that nobody reads: the same.
+  /// For a node that does not exist: stage_silent that names the nearest one.
+  Error no_node(const std::string& node) const;
+  /// For a topic that nobody reads: the same as for one that does not exist.
   Error no_reader(const std::string& topic, const std::string& type) const;
 
  private:

@@ -14,6 +14,9 @@ struct ReadOptions {
   int count = 0;           // messages until the end; 0: until Ctrl-C
   double timeout_s = 2.0;  // longest wait for the topic, and for the first message
   bool patient = false;    // waits for the first message without limit
+  /// Of a latched topic, whose writers send their last messages, oldest first: only the newest of
+  /// those, then the end.
+  bool newest = false;
 };
 
 struct RawMessage {
