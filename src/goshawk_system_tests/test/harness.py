@@ -9,6 +9,7 @@ import json
 import os
 import pathlib
 import random
+import resource
 import signal
 import socket
 import subprocess
@@ -308,7 +309,11 @@ def main():
     names = sys.argv[1:]
     tests = (loader.loadTestsFromNames(names, module) if names else
              loader.loadTestsFromModule(module))
+    begin = time.monotonic()
     result = unittest.TextTestRunner(resultclass=Report, verbosity=2).run(tests)
+    used = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
+    note(f"{sum(u.ru_utime + u.ru_stime for u in used):.0f} s of processor time in "
+         f"{time.monotonic() - begin:.0f} s")
     report = os.environ.get("GOSHAWK_REPORT")
     if report:
         pathlib.Path(report).parent.mkdir(parents=True, exist_ok=True)
