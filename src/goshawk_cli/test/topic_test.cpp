@@ -246,7 +246,6 @@ TEST_F(Verbs, ListsNodes) {
   EXPECT_EQ(json["nodes"][0]["process"], "goshawk_" + std::to_string(getpid()));
 }
 
-<<<<<<< HEAD
 TEST_F(Verbs, TellsWhatANodeWritesAndReads) {
   const auto text = find({"node", "info", "uav1/planner"});
   EXPECT_THAT(text.out, HasSubstr("Publishers: 3\n  /uav1/map/voxels  [goshawk_msgs/msg/VoxelGrid]\n"))
@@ -261,10 +260,7 @@ TEST_F(Verbs, TellsWhatANodeWritesAndReads) {
   EXPECT_THAT(wrong.err, HasSubstr("/uav1/planer"));
 }
 
-/// What is not there costs the whole timeout: a short one, and a longer one where the machine had
-=======
 /// What is not there costs the whole timeout: a short one, and a longer one if the machine had
->>>>>>> main
 /// not found the others by then.
 Outcome miss(const std::vector<std::string>& arguments) {
   Outcome outcome;
