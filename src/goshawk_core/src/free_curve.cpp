@@ -26,7 +26,7 @@ struct Span {
   int last;
 };
 
-/// The voxels of one axis that an interval may lie in. Two ways only where it is within the touch
+/// The voxels of one axis that an interval may lie in. Two ways only if it is within the touch
 /// of one face: below that face, or above it.
 struct Ways {
   std::array<Span, 2> spans;
