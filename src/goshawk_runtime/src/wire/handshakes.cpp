@@ -8,7 +8,7 @@
 namespace goshawk::runtime::wire {
 namespace {
 
-// A greeting may be lost on a network: whoever has not answered after so long is greeted again.
+// A greeting may be lost on a network: it is repeated if no answer has come after so long.
 constexpr std::int64_t kAgain_ns = 3'000'000'000;
 // All ways out of this process are used within so long: announcements go through each.
 constexpr std::int64_t kSending_ns = 1'000'000'000;

@@ -15,16 +15,16 @@ namespace goshawk::runtime::wire {
 
 /// Keeps the handshakes of DDS Security in step.
 ///
-/// A participant that hears nothing from another for a lease forgets it, keys included, though that
-/// one was only stopped or starved for a while, and has forgotten nothing. When they meet again,
-/// one begins a new handshake, and Fast DDS 2.9.1 ignores that in the other, which has finished
-/// one: they are deaf to each other for ever. So each participant greets whom it meets, and one
-/// that believes a handshake with the greeter to be finished forgets it and meets it anew. The same
-/// holds if a second request for a handshake comes that is not the first sent again.
+/// A participant that hears nothing from another for a lease forgets it, keys included, though the
+/// other was only stopped or starved for a while and has forgotten nothing. When they meet again, a
+/// new handshake begins, and Fast DDS 2.9.1 ignores it in the other, which has finished one: they
+/// are deaf to each other for ever. So each participant greets every other one that it meets, and
+/// one that has finished a handshake with the greeter forgets the greeter and meets it anew. It
+/// does the same if a second request for a handshake comes that is not the first one sent again.
 ///
-/// A greeting decides nothing that a stranger could not decide: discovery itself is not encrypted.
-/// It counts as said by whom it names, so it must have passed the checks of its sender. On one host
-/// datagrams keep their order; if they do not, a handshake may be made once more.
+/// With a forged greeting a stranger can delay a handshake, as with forged discovery data, which is
+/// not encrypted either; on loopback the check of senders refuses both. If a network reorders
+/// datagrams, a handshake may be made once more.
 /// Safe to call from several threads.
 class Handshakes {
  public:

@@ -41,7 +41,7 @@ struct FilterOptions {
 
 /// A transport that passes on only what fault_of() admits. If it listens on 127.0.0.1 alone, it
 /// also refuses what comes from elsewhere, and what names a participant that sends from another
-/// port. Under DDS Security it greets whom the participant meets (handshakes.hpp).
+/// port. Under DDS Security it greets each participant that is met (handshakes.hpp).
 ///
 /// @param plain UDPv4, UDPv6, TCPv4, TCPv6 or shared memory
 /// @return a descriptor of the same kind; the given one itself if it is of none of these

@@ -79,7 +79,7 @@ TEST(HandshakeDatagrams, AMessageIsReadByItsReceiverAlone) {
   EXPECT_FALSE(wire::handshake_message(wire::make_greeting(kOther, kOwn), kOwn));
 }
 
-TEST_F(Met, WhomTheGreeterIsDoneWithForgetsHim) {
+TEST_F(Met, AGreeterWithWhomAHandshakeWasFinishedIsForgotten) {
   const auto greeting = wire::make_greeting(kOther, kOwn);
   EXPECT_FALSE(handshakes.must_forget(greeting)) << "both have just met";
   handshakes.authorized(kOther);
@@ -111,7 +111,7 @@ TEST_F(Met, EachIsGreetedOnceThroughEachWay) {
   EXPECT_EQ(handshakes.greetings(&way, kSecond + 2).size(), 1U);
 }
 
-TEST_F(Met, ThatIsRepeatedUntilHeAnswers) {
+TEST_F(Met, AGreetingIsRepeatedUntilAnAnswerComes) {
   EXPECT_EQ(handshakes.greetings(&way, kSecond).size(), 1U);
   EXPECT_EQ(handshakes.greetings(&way, 3 * kSecond).size(), 0U);
   EXPECT_EQ(handshakes.greetings(&way, 5 * kSecond).size(), 1U);
