@@ -14,6 +14,7 @@ constexpr const char* kFooter =
     "  goshawk fly                  a flight through a made world; its folder is named at the end\n"
     "  goshawk view                 look at it\n"
     "  goshawk launch flight        all stages, until Ctrl-C; in another terminal:\n"
+    "  goshawk goto 3,8,2           fly there\n"
     "  goshawk topic list           what they say to each other\n"
     "  goshawk param set /navigator v_max_m_s 1\n"
     "  goshawk doctor               if something does not work\n"
@@ -44,6 +45,8 @@ void describe(Program& program) {
   add_map(program);
   add_campaign(program);
   add_launch(program);
+  add_goto(program);
+  add_hold(program);
   add_place(program);
   add_view(program);
   add_run(program);

@@ -9,7 +9,7 @@
 #include "goshawk/map_server/map_summary.hpp"
 #include "support.hpp"
 
-namespace goshawk::map_server {
+namespace goshawk::map_server::mesh_files {
 namespace {
 
 using ::testing::AllOf;
@@ -222,4 +222,4 @@ TEST(Summary, SaysWhatWasReadInNumbersThatCanBeCounted) {
 }
 
 }  // namespace
-}  // namespace goshawk::map_server
+}  // namespace goshawk::map_server::mesh_files

@@ -34,7 +34,8 @@ def reading_order():
 
 def made_by(line):
     """The files and folders that a command line leaves behind."""
-    return set(re.findall(r"(?:-o|--output|--save|--log-dir|goshawk world|secure init) (\S+)", line))
+    return set(re.findall(r"(?:-o|--output|--save|--log-dir|goshawk world|secure init|map crop \S+|"
+                          r"map merge|map save) (\S+)", line))
 
 
 def used_by(line):

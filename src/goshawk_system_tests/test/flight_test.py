@@ -3,6 +3,7 @@
 
 import csv
 import json
+import math
 import pathlib
 import struct
 
@@ -36,6 +37,11 @@ def table(path):
 
 def length(row, prefix, unit):
     return sum(row[f"{prefix}{axis}_{unit}"] ** 2 for axis in "xyz") ** 0.5
+
+
+def polyline_m(points):
+    """Length of the line through points."""
+    return sum(math.dist(a, b) for a, b in zip(points, points[1:]))
 
 
 class FlightCase(SystemTest):
@@ -78,6 +84,14 @@ class FlightCase(SystemTest):
             self.assertGreater(stage["wire_us"], 0.0, stage)
             self.assertLess(stage["wire_us"], 5e6, stage)
         path, trajectory = leg["path"], leg["trajectory"]
+        # What the summary asserts follows from the points that it brings.
+        self.assertAlmostEqual(path["raw_length_m"], polyline_m(path["raw_points"]), places=9)
+        self.assertAlmostEqual(path["pruned_length_m"], polyline_m(path["points"]), places=9)
+        self.assertEqual(len(path["raw_points"]), path["waypoints_raw"])
+        self.assertEqual(len(path["points"]), path["waypoints"])
+        self.assertLess(math.dist(path["points"][-1], leg["goal"]), 1e-9)
+        self.assertAlmostEqual(trajectory["mean_speed_m_s"],
+                               trajectory["length_m"] / trajectory["duration_s"], places=9)
         self.assertGreaterEqual(path["raw_length_m"], path["pruned_length_m"] - 1e-9)
         self.assertGreaterEqual(path["waypoints_raw"], path["waypoints"])
         self.assertGreaterEqual(leg["corridor"]["polytopes"], 1)
@@ -116,6 +130,11 @@ class FlightCase(SystemTest):
         clearance = second_opinion.smallest_clearance(folder / "world.bt", track)
         note(f"third opinion: centre {clearance:.3f} m from the nearest obstacle")
         self.assertGreater(clearance, harness.BODY_RADIUS_M)
+        # The second opinion takes a cylinder of that radius, 0.1 m high.
+        told = flight["clearance"]["smallest_m"]
+        self.assertLessEqual(told, clearance + 0.01)
+        reach_m = math.hypot(harness.BODY_RADIUS_M, 0.05)
+        self.assertGreaterEqual(told, clearance - reach_m - 0.01)
 
 
 class DefaultFlight(FlightCase):

@@ -6,7 +6,7 @@ import re
 import harness
 from calls_case import DONE, NOT_DONE, WRONG_CALL, CallsCase
 
-ALL_VERBS = ["plan", "fly", "check", "world", "campaign", "launch", "view", "run", "bench plan",
+ALL_VERBS = ["plan", "fly", "check", "world", "campaign", "launch", "goto", "hold", "view", "run", "bench plan",
              "bench search", "bench scenario", "bench stage", "bench dds", "bench corridor",
              "bench trajectory", "bench updates", "bench tracking", "bench map", "bench sensors",
              "conform", "record", "replay", "bag record", "bag play", "bag info",
@@ -70,6 +70,9 @@ class BadCalls(CallsCase):
                 (["record", "a b"], WRONG_CALL, "invalid_parameter"),
                 (["replay", "/no.mcap"], NOT_DONE, "io_failed"),
                 (["topic", "echo", "/a b"], WRONG_CALL, "invalid_parameter"),
+                (["goto", "1,2"], WRONG_CALL, "invalid_parameter"),
+                (["goto", "1,2,3", "--ready", "0.2"], NOT_DONE, "stage_silent"),
+                (["hold", "--namespace", "a b"], WRONG_CALL, "invalid_parameter"),
                 (["bag", "play", "/no.mcap"], NOT_DONE, "io_failed"),
                 (["bag", "info", "/no.mcap"], NOT_DONE, "io_failed"),
                 (["interface", "show", "goshawk_msgs/msg/Pth"], WRONG_CALL, "invalid_parameter"),

@@ -31,15 +31,27 @@ Json stages_json(const RequestRecord& record) {
   return stages;
 }
 
+double length_of(const std::vector<Vec3>& points_map) {
+  double length_m = 0.0;
+  for (std::size_t i = 1; i < points_map.size(); ++i) {
+    length_m += (points_map[i] - points_map[i - 1]).norm();
+  }
+  return length_m;
+}
+
+// Lengths are those of the points: a search stage of another make may leave the fields for them
+// zero, and its raw path empty.
 Json path_json(const RequestRecord& record) {
-  if (record.path.raw().empty()) return nullptr;
-  return {{"raw_length_m", record.path.raw_length()},
-          {"pruned_length_m", record.path.length()},
-          {"waypoints_raw", record.path.raw().size()},
-          {"waypoints", record.path.waypoints().size()},
+  const auto raw_map = conversions::from_msg(record.path.raw());
+  const auto waypoints_map = conversions::from_msg(record.path.waypoints());
+  if (waypoints_map.empty()) return nullptr;
+  return {{"raw_length_m", raw_map.empty() ? Json(nullptr) : Json(length_of(raw_map))},
+          {"pruned_length_m", length_of(waypoints_map)},
+          {"waypoints_raw", raw_map.size()},
+          {"waypoints", waypoints_map.size()},
           {"expanded", record.path.expanded()},
-          {"points", to_json(conversions::from_msg(record.path.waypoints()))},
-          {"raw_points", to_json(conversions::from_msg(record.path.raw()))}};
+          {"points", to_json(waypoints_map)},
+          {"raw_points", to_json(raw_map)}};
 }
 
 Json corridor_json(const RequestRecord& record) {
@@ -118,8 +130,11 @@ void print_leg(const Json& leg, std::size_t index, std::size_t count) {
                number(stage, "wire_us"));
   }
   if (const auto& p = leg["path"]; !p.is_null()) {
-    fmt::print("  path       {:.3f} m, {} waypoints; pruned {:.3f} m, {} waypoints\n",
-               number(p, "raw_length_m"), p["waypoints_raw"].get<std::int64_t>(),
+    const double raw_m = number(p, "raw_length_m");
+    fmt::print("  path       {}pruned {:.3f} m, {} waypoints\n",
+               std::isnan(raw_m) ? std::string()
+                                 : fmt::format("{:.3f} m, {} waypoints; ", raw_m,
+                                               p["waypoints_raw"].get<std::int64_t>()),
                number(p, "pruned_length_m"), p["waypoints"].get<std::int64_t>());
   }
   if (const auto& c = leg["corridor"]; !c.is_null()) {

@@ -31,7 +31,7 @@ struct Reading {
 
 void add_resolution(const Verb& verb, Reading& reading) {
   verb->add_option("--resolution", reading.load.resolution_m,
-                   "[m] voxel edge for files that have none: .pcd, .ply, .3dmap")
+                   "[m] voxel edge for files that have none: .pcd, .ply, .stl, .obj, .3dmap")
       ->capture_default_str();
 }
 
@@ -88,7 +88,7 @@ void add_info(const Verb& map) {
   };
   const Verb verb = map.word("info", "size, place and content of a map file");
   auto o = std::make_shared<Options>();
-  verb->add_option("file", o->file, "MAP: .bt, .ot, .pcd, .ply, .3dmap")->required();
+  verb->add_option("file", o->file, "MAP: .bt, .ot, .pcd, .ply, .stl, .obj, .3dmap")->required();
   add_resolution(verb, o->reading);
   verb->footer("Example:\n  goshawk map info office.bt");
   verb.runs([o](const Console& console) {

@@ -7,6 +7,8 @@
 namespace goshawk::cli {
 
 void add_fly(Program& program);
+void add_goto(Program& program);
+void add_hold(Program& program);
 void add_plan(Program& program);
 void add_check(Program& program);
 void add_world(Program& program);

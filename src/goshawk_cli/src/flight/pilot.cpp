@@ -1,0 +1,122 @@
+#include "flight/pilot.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "goshawk/conversions/geometry.hpp"
+#include "goshawk/conversions/status.hpp"
+#include "goshawk/conversions/vehicle.hpp"
+
+namespace goshawk::cli {
+namespace {
+
+namespace state = goshawk_msgs::msg::NavigatorState_Constants;
+using goshawk_msgs::msg::NavigatorState;
+using introspection::Interruptible;
+using Steady = std::chrono::steady_clock;
+
+std::string topic_in(const std::string& space, const char* name) {
+  return space == "/" ? fmt::format("/{}", name) : fmt::format("{}/{}", space, name);
+}
+
+double seconds_since(Steady::time_point begin) {
+  return std::chrono::duration<double>(Steady::now() - begin).count();
+}
+
+double yaw_of(const Quaternion& q) {
+  return std::atan2(2.0 * (q.w() * q.z() + q.x() * q.y()),
+                    1.0 - 2.0 * (q.y() * q.y() + q.z() * q.z()));
+}
+
+}  // namespace
+
+Pilot::Pilot(introspection::Session& session, const std::string& space, Say say)
+    : session_(session),
+      say_(std::move(say)),
+      goal_topic_(topic_in(space, "goal_pose")),
+      goals_(session.node().advertise<geometry_msgs::msg::PoseStamped>(
+          goal_topic_, runtime::Qos::reliable_last())) {
+  session.node().subscribe<nav_msgs::msg::Odometry>(
+      topic_in(space, "odom"), runtime::Qos::best_effort(), [this](const auto& m, const auto&) {
+        const auto odometry = conversions::from_msg(m);
+        if (!odometry) return;
+        position_map_ = odometry->position_map;
+        speed_m_s_ = odometry->velocity_map.norm();
+        yaw_rad_ = yaw_of(odometry->q_map_base);
+      });
+  session.node().subscribe<NavigatorState>(
+      topic_in(space, "navigator_state"), runtime::Qos::latched(20),
+      [this](const NavigatorState& m, const auto&) {
+        newest_ns_ = std::max(newest_ns_, conversions::to_ns(m.header().stamp()));
+        if (conversions::to_ns(m.header().stamp()) > asked_ns_) state_ = m;
+      });
+}
+
+Status Pilot::wait_ready(double timeout_s) {
+  session_.wait_for(timeout_s, [&] { return position_map_ && goals_.matched() > 0; });
+  if (Interruptible::interrupted()) return fail(ErrorCode::cancelled, "interrupted");
+  const int domain = session_.context().domain();
+  if (goals_.matched() == 0) {
+    return fail(ErrorCode::stage_silent,
+                fmt::format("no stage reads {} in domain {} (waited {:g} s). Is a flight running, "
+                            "with the same ROS_DOMAIN_ID and namespace?",
+                            goal_topic_, domain, timeout_s));
+  }
+  if (!position_map_) {
+    return fail(ErrorCode::stage_silent,
+                fmt::format("no odometry came in domain {} within {:g} s: where the vehicle is, is "
+                            "not known",
+                            domain, timeout_s));
+  }
+  session_.wait_for(0.5, [] { return false; });  // what the navigator said before comes in this time
+  return success();
+}
+
+bool Pilot::is_answered() const {
+  return state_ &&
+         (state_->state() == state::STATE_ARRIVED || state_->state() == state::STATE_FAILED);
+}
+
+void Pilot::tell_progress(const Vec3& goal_map) {
+  say_(fmt::format("{}, {:.2f} m to go, {:.2f} m/s",
+                   state_ ? conversions::navigator_state_word(state_->state()) : "asked",
+                   (*position_map_ - goal_map).norm(), speed_m_s_));
+}
+
+Result<Arrival> Pilot::go(const Vec3& goal_map, std::optional<double> yaw_rad, double timeout_s) {
+  const double half_yaw_rad = 0.5 * yaw_rad.value_or(yaw_rad_);
+  geometry_msgs::msg::PoseStamped goal;
+  goal.header(conversions::make_header(session_.node().now_ns()));
+  goal.pose().position(conversions::to_point(goal_map));
+  goal.pose().orientation().z(std::sin(half_yaw_rad));
+  goal.pose().orientation().w(std::cos(half_yaw_rad));
+  // The answer to an earlier goal is not the answer to this one.
+  asked_ns_ = newest_ns_;
+  state_.reset();
+  if (auto status = goals_.publish(goal); !status) return status.error();
+  const auto begin = Steady::now();
+  while (!is_answered() && seconds_since(begin) < timeout_s && !Interruptible::interrupted()) {
+    session_.wait_for(std::min(1.0, timeout_s - seconds_since(begin)),
+                      [this] { return is_answered(); });
+    if (!is_answered()) tell_progress(goal_map);
+  }
+  if (is_answered()) {
+    if (state_->state() == state::STATE_FAILED) {
+      return fail(conversions::error_code_of(state_->code()), state_->message());
+    }
+    return Arrival{goal_map, (*position_map_ - goal_map).norm(), seconds_since(begin)};
+  }
+  if (Interruptible::interrupted()) {
+    return fail(ErrorCode::cancelled,
+                "interrupted: the vehicle flies on to its goal (goshawk hold stops it)");
+  }
+  return fail(ErrorCode::deadline_exceeded,
+              fmt::format("not there within {:g} s: the vehicle flies on (goshawk hold stops it; "
+                          "--timeout waits longer)",
+                          timeout_s));
+}
+
+}  // namespace goshawk::cli
