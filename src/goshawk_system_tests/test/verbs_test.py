@@ -8,7 +8,7 @@ from calls_case import DONE, NOT_DONE, WRONG_CALL, CallsCase
 
 ALL_VERBS = ["plan", "fly", "check", "world", "campaign", "launch", "view", "run", "bench plan",
              "bench search", "bench scenario", "bench stage", "bench dds", "bench corridor",
-             "bench trajectory", "bench updates", "bench tracking", "bench map", "bench sensors",
+             "bench trajectory", "bench replan", "bench updates", "bench tracking", "bench map", "bench sensors",
              "conform", "record", "replay",
              "topic list", "topic info", "topic echo", "topic hz", "topic delay", "topic bw", "topic pub",
              "node list", "param list", "param get", "param set", "param describe", "param dump",
