@@ -89,15 +89,6 @@ std::size_t BrickMap::memory_bytes() const {
          changed_.size() + local_.size() * 8;
 }
 
-bool BrickMap::bit(Index3 v, Words Bits::* words) const {
-  if (unsigned(v.x) >= unsigned(size_.x) || unsigned(v.y) >= unsigned(size_.y) ||
-      unsigned(v.z) >= unsigned(size_.z)) {
-    return false;
-  }
-  const Bits* bits = find({v.x >> 6, v.y >> 3, v.z >> 3});
-  return bits != nullptr && ((bits->*words)[std::size_t(8 * (v.z & 7) + (v.y & 7))] >> (v.x & 63) & 1U);
-}
-
 BrickMap::Bits& BrickMap::own(Index3 brick) {
   std::int32_t& slot = slots_[flat(brick)];
   if (slot >= 0) return pool_[std::size_t(slot)];

@@ -29,9 +29,9 @@ Index3 whole_bricks(Index3 size) {
 Result<LiveWindow> LiveWindow::make(const GridGeometry& geometry, const Growth& growth,
                                     const LiveOptions& options) {
   const Index3 size = options.follows ? whole_bricks(geometry.size) : geometry.size;
-  auto map = BrickMap::make(size, {growth.inflation_m, geometry.resolution_m,
-                                   growth.unknown != UnknownPolicy::free,
-                                   growth.unknown == UnknownPolicy::occupied});
+  auto map = BrickMap::make(
+      size, {growth.inflation_m, geometry.resolution_m, growth.unknown != UnknownPolicy::free,
+             growth.unknown == UnknownPolicy::occupied});
   if (!map) return map.error();
   return LiveWindow(*std::move(map), geometry, options);
 }
@@ -47,18 +47,18 @@ LiveWindow::LiveWindow(BrickMap map, const GridGeometry& geometry, const LiveOpt
   odds_.resize(map_.counts());
 }
 
+Vec3 LiveWindow::lower_voxel() const {
+  return {lower_voxel_.x + double(kBrickSize.x) * moved_.x,
+          lower_voxel_.y + double(kBrickSize.y) * moved_.y,
+          lower_voxel_.z + double(kBrickSize.z) * moved_.z};
+}
+
 GridGeometry LiveWindow::geometry() const {
-  const Vec3 lower(lower_voxel_.x + double(kBrickSize.x) * moved_.x,
-                   lower_voxel_.y + double(kBrickSize.y) * moved_.y,
-                   lower_voxel_.z + double(kBrickSize.z) * moved_.z);
-  return {resolution_m_ * lower, resolution_m_, map_.size()};
+  return {resolution_m_ * lower_voxel(), resolution_m_, map_.size()};
 }
 
 Vec3 LiveWindow::to_voxels(const Vec3& p_map) const {
-  const Vec3 lower(lower_voxel_.x + double(kBrickSize.x) * moved_.x,
-                   lower_voxel_.y + double(kBrickSize.y) * moved_.y,
-                   lower_voxel_.z + double(kBrickSize.z) * moved_.z);
-  return p_map / resolution_m_ - lower;
+  return p_map / resolution_m_ - lower_voxel();
 }
 
 std::size_t LiveWindow::flat(Index3 b) const {
@@ -206,10 +206,11 @@ void LiveWindow::cast(const Scan& scan, ScanResult& result) {
   const Vec3 body = has_body ? to_voxels(scan.body_path_map.back()) : Vec3::Zero();
   const double body_radius = has_body ? scan.body_radius_m / resolution_m_ : -1.0;
   const BrickMap* held = options_.keep_grazed ? &map_ : nullptr;
+  const Vec3 lower = lower_voxel();
   Vec3 from = to_voxels(scan.origins_map.front());
   for (std::size_t i = 0; i < scan.points_map.size(); ++i) {
-    if (!one_origin) from = to_voxels(scan.origins_map[i]);
-    const Vec3 to = to_voxels(scan.points_map[i]);
+    if (!one_origin) from = scan.origins_map[i] / resolution_m_ - lower;
+    const Vec3 to = scan.points_map[i] / resolution_m_ - lower;
     const Vec3 ray = to - from;
     const double length = ray.norm();
     // Many drivers write a missing return as the sensor's own place: it would block that voxel.
@@ -225,19 +226,19 @@ void LiveWindow::cast(const Scan& scan, ScanResult& result) {
 }
 
 void LiveWindow::integrate() {
-  rays_.for_lines([this](Index3 brick, int first_row, const BrickMap::Word* missed,
-                         const BrickMap::Word* hit) {
-    const std::int32_t slot = odds_.open(flat(brick), map_.find(brick));
-    for (int k = 0; k < RayScan::kLine; ++k) {
-      if ((missed[k] | hit[k]) == 0) continue;
-      const int row = first_row + k;
-      const BrickMap::Bits* bits = map_.find(brick);
-      BrickMap::Word raw = bits != nullptr ? bits->raw[std::size_t(row)] : 0;
-      BrickMap::Word known = bits != nullptr ? bits->known[std::size_t(row)] : 0;
-      odds_.step(slot, row, missed[k], hit[k], raw, known);
-      map_.write(brick, row, raw, known);
-    }
-  });
+  rays_.for_lines(
+      [this](Index3 brick, int first_row, const BrickMap::Word* missed, const BrickMap::Word* hit) {
+        const std::int32_t slot = odds_.open(flat(brick), map_.find(brick));
+        for (int k = 0; k < RayScan::kLine; ++k) {
+          if ((missed[k] | hit[k]) == 0) continue;
+          const int row = first_row + k;
+          const BrickMap::Bits* bits = map_.find(brick);
+          BrickMap::Word raw = bits != nullptr ? bits->raw[std::size_t(row)] : 0;
+          BrickMap::Word known = bits != nullptr ? bits->known[std::size_t(row)] : 0;
+          odds_.step(slot, row, missed[k], hit[k], raw, known);
+          map_.write(brick, row, raw, known);
+        }
+      });
 }
 
 void LiveWindow::clear_voxel(Index3 v) {

@@ -45,6 +45,7 @@ class LiveWindow {
   void choose_box(const Scan& scan);
   void integrate();
   void clear_voxel(Index3 voxel);
+  Vec3 lower_voxel() const;  // of the window, on the raster
   Vec3 to_voxels(const Vec3& p_map) const;
   std::size_t flat(Index3 brick) const;
   void bring_back();

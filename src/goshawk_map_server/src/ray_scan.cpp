@@ -3,209 +3,192 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
+#include <utility>
+
+#include "grazing.hpp"
 
 namespace goshawk::map_server {
 namespace {
 
 using Word = RayScan::Word;
 
-// A ray is passed through from time 0 to kEnd. Times are integers: sums of them are exact.
-constexpr std::int64_t kEnd = std::int64_t{1} << 60;
-constexpr std::int64_t kNever = std::int64_t{1} << 61;  // longest time between two faces
-constexpr int kFraction = 32;                           // bits of a place along x
-constexpr int kMostHeld = 64;                           // voxels of a surface that a ray grazes
+constexpr int kFraction = 32;  // bits of a place along the rows
 
-// When a ray crosses the faces across one axis.
-struct Crossings {
-  int first = 0, last = 0;   // voxels at the ends
-  int count = 0, step = 1;   // faces between them, and the direction
-  std::int64_t next = kEnd;  // time of the first one
-  std::int64_t every = kEnd;
+bool holds(Index3 size, Index3 v) {
+  return unsigned(v.x) < unsigned(size.x) && unsigned(v.y) < unsigned(size.y) &&
+         unsigned(v.z) < unsigned(size.z);
+}
 
-  Crossings(double from, double to)
-      : first(int(std::floor(from))), last(int(std::floor(to))), count(std::abs(last - first)) {
-    const double way = to - from;
-    step = way < 0.0 ? -1 : 1;
-    if (count == 0) return;
-    const double period = double(kEnd) / std::abs(way);
-    const double ahead = way > 0.0 ? double(first) + 1.0 - from : from - double(first);
-    every = std::int64_t(std::min(period, double(kNever)));
-    // Rounding must neither lose nor add a face: the last one comes before the end, the next after.
-    const std::int64_t least = kEnd - count * every;
-    next = std::clamp(std::int64_t(std::min(ahead * period, double(kNever))), least,
-                      least + every - 1);
+// Where a ray is along its rows at the faces across another axis: the first place, and the way
+// between two of them. No place lies beyond the ray's ends.
+struct Places {
+  std::int64_t next, advance;
+
+  Places(const Ray& ray, const Crossings& c)
+      : next(at(ray, ray.from.x(), c.next)), advance(c.count < 2 ? 0 : at(ray, 0.0, c.every)) {
+    const std::int64_t low = std::int64_t{std::min(ray.x.first, ray.x.last)} << kFraction;
+    const std::int64_t high =
+        ((std::int64_t{std::max(ray.x.first, ray.x.last)} + 1) << kFraction) - 1;
+    next = std::clamp(next, low, high);
+    if (c.count < 2) return;
+    const std::int64_t last = next + (c.count - 1) * advance;
+    if (last < low || last > high) advance = (std::clamp(last, low, high) - next) / (c.count - 1);
+  }
+
+ private:
+  static std::int64_t at(const Ray& ray, double from, std::int64_t time) {
+    const double voxels = from + ray.way.x() * (double(time) / double(Crossings::kEnd));
+    return std::int64_t(voxels * double(std::int64_t{1} << kFraction));
   }
 };
+
+// The voxels of a word from one on, and up to one.
+struct Masks {
+  std::array<Word, 64> from{}, to{};
+
+  constexpr Masks() {
+    for (unsigned k = 0; k < 64; ++k) {
+      from[k] = ~Word{0} << k;
+      to[k] = ~Word{0} >> (63 - k);
+    }
+  }
+};
+constexpr Masks kMasks;
+
+// Bit k of word i becomes bit i of word k.
+void transpose(std::span<Word, 64> words) {
+  Word low = 0xFFFFFFFFU;
+  for (std::size_t side = 32; side != 0; side /= 2, low ^= low << side) {
+    for (std::size_t k = 0; k < 64; k = ((k | side) + 1) & ~side) {
+      const Word swap = ((words[k] >> side) ^ words[k | side]) & low;
+      words[k] ^= swap << side;
+      words[k | side] ^= swap;
+    }
+  }
+}
 
 }  // namespace
 
-struct RayScan::Ray {
-  Vec3 from, way;
-  Crossings x, y, z;
-
-  Ray(const Vec3& a, const Vec3& b)
-      : from(a), way(b - a), x(a.x(), b.x()), y(a.y(), b.y()), z(a.z(), b.z()) {}
-
-  // Where it is along x at the faces across another axis: the first place, and the way between two.
-  std::int64_t place(const Crossings& c) const {
-    const double at = from.x() + way.x() * (double(c.next) / double(kEnd));
-    return std::int64_t(at * double(std::int64_t{1} << kFraction));
-  }
-  std::int64_t advance(const Crossings& c) const {
-    if (c.count < 2) return 0;
-    const double by = way.x() * (double(c.every) / double(kEnd));
-    return std::int64_t(by * double(std::int64_t{1} << kFraction));
-  }
-};
+void RayScan::Bits::clear(Index3 voxels) {
+  size = voxels;
+  plane = std::int64_t{size.y} * size.z;
+  missed.assign(std::size_t(plane) * std::size_t((size.x + 63) / 64), 0);
+}
 
 void RayScan::begin(Index3 lower, Index3 counts) {
-  for_touched([this](std::size_t line) {
-    std::fill_n(missed_.begin() + std::ptrdiff_t(line) * kLine, kLine, 0);
-    std::fill_n(hit_.begin() + std::ptrdiff_t(line) * kLine, kLine, 0);
-    touched_[line] = 0;
-  });
   lower_ = lower;
   counts_ = counts;
   size_ = {64 * counts.x, 8 * counts.y, 8 * counts.z};
-  plane_ = std::int64_t{size_.y} * size_.z;
-  const std::size_t words = std::size_t(plane_) * std::size_t(counts.x);
-  if (words <= missed_.size()) return;
-  missed_.resize(words);
-  hit_.resize(words);
-  touched_.resize(words / kLine);
+  rows_.clear(size_);
+  columns_.clear({size_.y, size_.x, size_.z});
+  hit_.assign(rows_.missed.size(), 0);
 }
 
 // Where rays are marked; apart from the scan, so that a write does not make it be read again.
 struct RayScan::Marks {
   Word* missed;
-  std::uint8_t* touched;
   std::int64_t plane;
 
-  void put(std::size_t at, Word bits) const {
-    missed[at] |= bits;
-    touched[at / kLine] = 1;
-  }
-  // The voxels between x0 and x1, in any order, of a row.
-  void put(std::int64_t row, int x0, int x1) const {
-    const int low = std::min(x0, x1), high = std::max(x0, x1);
-    const Word from_low = ~Word{0} << (low & 63), to_high = ~Word{0} >> (63 - (high & 63));
-    auto at = std::size_t(row + (low >> 6) * plane);
-    if ((low >> 6) == (high >> 6)) return put(at, from_low & to_high);
-    put(at, from_low);
-    for (int w = (low >> 6) + 1; w < (high >> 6); ++w) put(at += std::size_t(plane), ~Word{0});
-    put(at + std::size_t(plane), to_high);
+  // The voxels low .. high of a row.
+  void put(std::int64_t row, int low, int high) const {
+    const Word from = kMasks.from[unsigned(low) % 64], to = kMasks.to[unsigned(high) % 64];
+    Word* word = missed + (row + (low >> 6) * plane);
+    if ((low >> 6) == (high >> 6)) {
+      *word |= from & to;
+      return;
+    }
+    *word |= from;
+    for (int w = (low >> 6) + 1; w < (high >> 6); ++w) *(word += plane) = ~Word{0};
+    word[plane] |= to;
   }
 };
 
-// From row to row up to the voxel `last`, which is not marked.
-template <bool kInside>
-void RayScan::walk(const Ray& ray, Index3 last, int steps_y, int steps_z) {
-  std::int64_t next_y = ray.y.next, next_z = ray.z.next;
-  std::int64_t place_y = ray.place(ray.y), place_z = ray.place(ray.z);
-  const std::int64_t advance_y = ray.advance(ray.y), advance_z = ray.advance(ray.z);
-  const int low = std::min(ray.x.first, ray.x.last), high = std::max(ray.x.first, ray.x.last);
+// From row to row up to the voxel `last`, which is not marked. Masks in place of branches: which
+// face comes next cannot be foretold.
+template <bool kInside, bool kUp>
+void RayScan::walk(Bits& bits, const Ray& ray, Index3 last) {
+  const Index3 size = bits.size;
+  const Marks marks{bits.missed.data(), bits.plane};
+  const Places at_y(ray, ray.y), at_z(ray, ray.z);
+  std::int64_t place_y = at_y.next, place_z = at_z.next;
+  const std::int64_t advance_y = at_y.advance, advance_z = at_z.advance;
+  std::int64_t until_z = ray.z.next - ray.y.next;  // from the next face across y
+  const std::int64_t every_y = ray.y.every, both = ray.y.every + ray.z.every;
   int x = ray.x.first, y = ray.y.first, z = ray.z.first;
-  std::int64_t row = std::int64_t{z} * size_.y + y;
-  const std::int64_t step_z = std::int64_t{ray.z.step} * size_.y;
-  const Marks marks{missed_.data(), touched_.data(), plane_};
-  const auto put = [&](int x0, int x1) {
-    if constexpr (kInside) return marks.put(row, x0, x1);
-    if (unsigned(y) >= unsigned(size_.y) || unsigned(z) >= unsigned(size_.z)) return;
-    const int a = std::max(std::min(x0, x1), 0), b = std::min(std::max(x0, x1), size_.x - 1);
-    if (a <= b) marks.put(row, a, b);
+  const int step_y = ray.y.step, step_z = ray.z.step;
+  std::int64_t row = std::int64_t{z} * size.y + y;
+  const std::int64_t row_y = step_y, row_more = std::int64_t{step_z} * size.y - step_y;
+  const auto put = [&](int low, int high) {
+    if constexpr (kInside) return marks.put(row, low, high);
+    if (unsigned(y) >= unsigned(size.y) || unsigned(z) >= unsigned(size.z)) return;
+    low = std::max(low, 0);
+    high = std::min(high, size.x - 1);
+    if (low <= high) marks.put(row, low, high);
   };
-  // Masks in place of branches: which face comes next cannot be foretold.
-  for (int n = steps_y + steps_z; n > 0; --n) {
-    const std::int64_t by_y = -std::int64_t(next_y <= next_z), by_z = ~by_y;
-    const std::int64_t place = (place_y & by_y) | (place_z & by_z);
-    const int to = std::clamp(int(place >> kFraction), low, high);
-    put(x, to);
+  for (int n = std::abs(last.y - y) + std::abs(last.z - z); n > 0; --n) {
+    const std::int64_t by_z = until_z >> 63;
+    const auto place = int((place_y ^ ((place_y ^ place_z) & by_z)) >> kFraction);
+    const int to = kUp ? std::max(x, place) : std::min(x, place);
+    put(kUp ? x : to, kUp ? to : x);
     x = to;
-    next_y += ray.y.every & by_y;
-    place_y += advance_y & by_y;
-    next_z += ray.z.every & by_z;
+    until_z += (both & by_z) - every_y;
+    place_y += advance_y & ~by_z;
     place_z += advance_z & by_z;
-    row += (ray.y.step & by_y) | (step_z & by_z);
+    row += row_y + (row_more & by_z);
     if constexpr (!kInside) {
-      y += int(ray.y.step & by_y);
-      z += int(ray.z.step & by_z);
+      y += step_y & ~int(by_z);
+      z += step_z & int(by_z);
     }
   }
-  if (ray.x.step > 0 ? x < last.x : x > last.x) put(x, last.x - ray.x.step);
+  if (kUp ? x < last.x : x > last.x) put(kUp ? x : last.x + 1, kUp ? last.x - 1 : x);
 }
 
 void RayScan::cast(const Vec3& from, const Vec3& to, bool hits, const BrickMap* held) {
   const Vec3 corner(64.0 * lower_.x, 8.0 * lower_.y, 8.0 * lower_.z);
-  const Ray ray(from - corner, to - corner);
-  const auto inside = [&](Index3 v) {
-    return unsigned(v.x) < unsigned(size_.x) && unsigned(v.y) < unsigned(size_.y) &&
-           unsigned(v.z) < unsigned(size_.z);
-  };
-  const Index3 first{ray.x.first, ray.y.first, ray.z.first};
-  const Index3 end{ray.x.last, ray.y.last, ray.z.last};
-  const bool ends_inside = inside(end);
-  Index3 last = end;
+  Vec3 a = from - corner, b = to - corner;
+  const bool along_y = std::abs(b.y() - a.y()) > std::abs(b.x() - a.x());
+  if (along_y) {
+    std::swap(a.x(), a.y());
+    std::swap(b.x(), b.y());
+  }
+  const Ray ray(a, b);
+  Bits& bits = along_y ? columns_ : rows_;
+  Index3 last = ray.last();
+  const bool ends_inside = holds(bits.size, last);
   if (hits && ends_inside) {
-    const auto at =
-        std::size_t((end.x >> 6) * plane_ + std::int64_t{end.z} * size_.y + end.y);
-    hit_[at] |= Word{1} << (end.x & 63);
-    touched_[at / kLine] = 1;
-    if (held != nullptr) last = first_held(ray, *held);
-  }
-  const int steps_y = std::abs(last.y - first.y), steps_z = std::abs(last.z - first.z);
-  if (ends_inside && inside(first)) return walk<true>(ray, last, steps_y, steps_z);
-  walk<false>(ray, last, steps_y, steps_z);
-}
-
-// Backwards from the end while the ray grazes the surface that it ends at.
-Index3 RayScan::first_held(const Ray& ray, const BrickMap& map) const {
-  Index3 voxel{ray.x.last, ray.y.last, ray.z.last};
-  const auto before = [](const Crossings& c) {
-    return c.count == 0 ? -kNever : c.next + (c.count - 1) * c.every;
-  };
-  std::int64_t x = before(ray.x), y = before(ray.y), z = before(ray.z);
-  const int most = std::min(kMostHeld, ray.x.count + ray.y.count + ray.z.count - 1);
-  for (int k = 0; k < most; ++k) {
-    Index3 previous = voxel;
-    if (x >= y && x >= z) {
-      previous.x -= ray.x.step;
-      x -= ray.x.every;
-    } else if (y >= z) {
-      previous.y -= ray.y.step;
-      y -= ray.y.every;
-    } else {
-      previous.z -= ray.z.step;
-      z -= ray.z.every;
+    const int x = along_y ? last.y : last.x, y = along_y ? last.x : last.y;
+    hit_[std::size_t((x >> 6) * rows_.plane + std::int64_t{last.z} * size_.y + y)] |= Word{1}
+                                                                                      << (x & 63);
+    if (held != nullptr) {
+      last = Grazing(*held, {64 * lower_.x, 8 * lower_.y, 8 * lower_.z}, along_y).first_held(ray);
     }
-    if (!grazes(ray, previous, map)) break;
-    voxel = previous;
   }
-  return voxel;
+  if (ends_inside && holds(bits.size, ray.first())) {
+    return ray.x.step > 0 ? walk<true, true>(bits, ray, last) : walk<true, false>(bits, ray, last);
+  }
+  return ray.x.step > 0 ? walk<false, true>(bits, ray, last) : walk<false, false>(bits, ray, last);
 }
 
-// Is the voxel an obstacle of the surface in which the ray ends: in the same layer, with its free
-// side towards the ray, more of it beside the ray, and no free space behind?
-bool RayScan::grazes(const Ray& ray, Index3 voxel, const BrickMap& map) const {
-  const Index3 at = voxel + Index3{64 * lower_.x, 8 * lower_.y, 8 * lower_.z};
-  if (!map.is_raw(at)) return false;
-  const std::array<double, 3> way{std::abs(ray.way.x()), std::abs(ray.way.y()),
-                                  std::abs(ray.way.z())};
-  const std::array<bool, 3> same{voxel.x == ray.x.last, voxel.y == ray.y.last,
-                                 voxel.z == ray.z.last};
-  const std::array<int, 3> step{ray.x.step, ray.y.step, ray.z.step};
-  constexpr std::array<Index3, 3> unit{Index3{1, 0, 0}, Index3{0, 1, 0}, Index3{0, 0, 1}};
-  const auto main = std::size_t(std::max_element(way.begin(), way.end()) - way.begin());
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (!same[axis] || axis == main || way[axis] > 0.5 * way[main]) continue;
-    const Index3 beside = unit[3 - axis - main];
-    const Index3 towards{unit[axis].x * step[axis], unit[axis].y * step[axis],
-                         unit[axis].z * step[axis]};
-    const bool exposed = !map.is_raw(at - towards);
-    const bool backed = map.is_raw(at + towards) || !map.is_known(at + towards);
-    const bool wide = map.is_raw(at + beside) || map.is_raw(at - beside);
-    if (exposed && backed && wide) return true;
+void RayScan::add_columns() {
+  std::array<Word, 64> tile;
+  for (int w = 0; w < counts_.x; ++w) {
+    for (int z = 0; z < size_.z; ++z) {
+      for (int v = 0; 64 * v < size_.y; ++v) {
+        Word* from =
+            columns_.missed.data() + v * columns_.plane + std::int64_t{z} * size_.x + 64 * w;
+        Word any = 0;
+        for (int k = 0; k < 64; ++k) any |= from[k];
+        if (any == 0) continue;
+        std::copy_n(from, 64, tile.data());
+        std::fill_n(from, 64, 0);
+        transpose(tile);
+        const int last = std::min(64, size_.y - 64 * v);
+        Word* to = rows_.missed.data() + w * rows_.plane + std::int64_t{z} * size_.y + 64 * v;
+        for (int k = 0; k < last; ++k) to[k] |= tile[std::size_t(k)];
+      }
+    }
   }
-  return false;
 }
 
 }  // namespace goshawk::map_server

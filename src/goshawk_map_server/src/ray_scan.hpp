@@ -1,16 +1,18 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <vector>
 
 #include "goshawk/core/brick_map.hpp"
+#include "ray.hpp"
 
 namespace goshawk::map_server {
 
 /// The rays of one scan as bits: which voxels of a box of bricks they end in, and which they pass
 /// through. Rays are walked exactly, row by row: every voxel whose inside they cross is met, and
-/// no other (a ray along a face belongs to the upper voxel).
+/// no other (a ray along a face belongs to the upper voxel). The rows of a ray lie along x or y,
+/// whichever it follows more closely: so a word takes as many of its voxels as possible.
 class RayScan {
  public:
   using Word = BrickMap::Word;
@@ -27,47 +29,48 @@ class RayScan {
   void cast(const Vec3& from, const Vec3& to, bool hits, const BrickMap* held);
 
   /// visit(Index3 brick, int first row, const Word* missed, const Word* hit) for each line that
-  /// was touched; both point to 8 words. A voxel may be in both.
+  /// was touched, in the order of their place; both point to 8 words. A voxel may be in both.
   template <typename Visit>
-  void for_lines(Visit&& visit) const {
-    for_touched([&](std::size_t line) {
-      const std::size_t rest = line / std::size_t(counts_.y);
-      const int z = int(rest % std::size_t(size_.z));
-      const Index3 brick{lower_.x + int(rest / std::size_t(size_.z)),
-                         lower_.y + int(line % std::size_t(counts_.y)), lower_.z + z / 8};
-      const std::size_t at = line * kLine;
-      visit(brick, 8 * (z % 8), missed_.data() + at, hit_.data() + at);
-    });
-  }
-
-  std::size_t memory_bytes() const { return 8 * (missed_.size() + hit_.size()) + touched_.size(); }
-
- private:
-  struct Ray;
-  struct Marks;
-  template <bool kInside>
-  void walk(const Ray& ray, Index3 last, int steps_y, int steps_z);
-  // In the order of their place; lines that were not touched are passed over by eights.
-  template <typename Visit>
-  void for_touched(Visit&& visit) const {
-    const std::size_t lines = std::size_t(plane_) / kLine * std::size_t(counts_.x);
-    for (std::size_t first = 0; first < lines; first += 8) {
-      std::uint64_t eight;  // counts_.z brings 8 lines each: always whole
-      std::memcpy(&eight, touched_.data() + first, sizeof eight);
-      if (eight == 0) continue;
-      for (std::size_t line = first; line < first + 8; ++line) {
-        if (touched_[line] != 0) visit(line);
+  void for_lines(Visit&& visit) {
+    add_columns();
+    for (int x = 0; x < counts_.x; ++x) {
+      for (int z = 0; z < size_.z; ++z) {
+        for (int y = 0; y < counts_.y; ++y) {
+          const auto at = std::size_t(x * rows_.plane + std::int64_t{z} * size_.y + y * kLine);
+          const Word* missed = rows_.missed.data() + at;
+          const Word* hit = hit_.data() + at;
+          Word any = 0;
+          for (int k = 0; k < kLine; ++k) any |= missed[k] | hit[k];
+          if (any == 0) continue;
+          visit(Index3{lower_.x + x, lower_.y + y, lower_.z + z / 8}, 8 * (z % 8), missed, hit);
+        }
       }
     }
   }
-  Index3 first_held(const Ray& ray, const BrickMap& map) const;
-  bool grazes(const Ray& ray, Index3 voxel, const BrickMap& map) const;
 
-  Index3 lower_, counts_;       // [bricks]
-  Index3 size_;                 // [voxels]
-  std::int64_t plane_ = 0;      // words of all rows with the same 64 x
-  std::vector<Word> missed_, hit_;     // ((x / 64) * size z + z) * size y + y
-  std::vector<std::uint8_t> touched_;  // of each line
+  std::size_t memory_bytes() const {
+    return 8 * (rows_.missed.size() + columns_.missed.size() + hit_.size());
+  }
+
+ private:
+  /// Voxels with 64 neighbours along their first axis in a word.
+  struct Bits {
+    Index3 size;               // [voxels]
+    std::int64_t plane = 0;    // words of all rows with the same 64 of the first axis
+    std::vector<Word> missed;  // ((first / 64) * size z + z) * size of the second + second
+
+    void clear(Index3 voxels);
+  };
+  struct Marks;
+
+  template <bool kInside, bool kUp>
+  static void walk(Bits& bits, const Ray& ray, Index3 last);
+  void add_columns();
+
+  Index3 lower_, counts_;  // [bricks]
+  Index3 size_;            // [voxels]
+  Bits rows_, columns_;    // along x; along y, with x and y exchanged
+  std::vector<Word> hit_;  // as rows_
 };
 
 }  // namespace goshawk::map_server

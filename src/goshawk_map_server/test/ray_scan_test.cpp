@@ -19,20 +19,20 @@ struct Seen {
   Voxels missed, hit;
 };
 
-Seen seen_of(const RayScan& scan) {
+Seen seen_of(RayScan& scan) {
   Seen seen;
-  scan.for_lines([&](Index3 brick, int first_row, const RayScan::Word* missed,
-                     const RayScan::Word* hit) {
-    for (int k = 0; k < RayScan::kLine; ++k) {
-      const int row = first_row + k;
-      for (int x = 0; x < 64; ++x) {
-        const Voxel voxel{64 * brick.x + x, 8 * brick.y + row % 8, 8 * brick.z + row / 8};
-        const bool twice = ((missed[k] >> x & 1U) != 0 && !seen.missed.insert(voxel).second) ||
-                           ((hit[k] >> x & 1U) != 0 && !seen.hit.insert(voxel).second);
-        EXPECT_FALSE(twice);
-      }
-    }
-  });
+  scan.for_lines(
+      [&](Index3 brick, int first_row, const RayScan::Word* missed, const RayScan::Word* hit) {
+        for (int k = 0; k < RayScan::kLine; ++k) {
+          const int row = first_row + k;
+          for (int x = 0; x < 64; ++x) {
+            const Voxel voxel{64 * brick.x + x, 8 * brick.y + row % 8, 8 * brick.z + row / 8};
+            const bool twice = ((missed[k] >> x & 1U) != 0 && !seen.missed.insert(voxel).second) ||
+                               ((hit[k] >> x & 1U) != 0 && !seen.hit.insert(voxel).second);
+            EXPECT_FALSE(twice);
+          }
+        }
+      });
   return seen;
 }
 
@@ -72,25 +72,30 @@ Vec3 place(Random& random, double low, double high, bool on_raster) {
   return p;
 }
 
-TEST(RayScan, MeetsTheVoxelsThatABruteForceCasterMeets) {
-  Random random(3);
-  const Index3 lower_brick{1, 1, 0}, counts{2, 2, 2};
-  const Index3 lower{64, 8, 0}, upper{192, 24, 16};
+// Inside of a box, from outside, through, past; on the raster of faces and edges too.
+void expect_rays(Index3 lower_brick, Index3 counts, const Vec3& way, int rounds, Random& random) {
+  const Index3 lower{64 * lower_brick.x, 8 * lower_brick.y, 8 * lower_brick.z};
+  const Index3 upper = lower + Index3{64 * counts.x, 8 * counts.y, 8 * counts.z};
+  const Vec3 middle = 0.5 * Vec3(lower.x + upper.x, lower.y + upper.y, lower.z + upper.z);
   RayScan scan;
-  for (int round = 0; round < 400; ++round) {
-    // Inside, from outside, through, past; on the raster of faces and edges too.
+  for (int round = 0; round < rounds; ++round) {
     const bool on_raster = round % 4 == 0;
     const double spread = round % 3 == 0 ? 40.0 : 7.9;
-    const Vec3 middle(128.0, 16.0, 8.0);
     const Vec3 from = middle + place(random, -spread, spread, on_raster);
     Vec3 to = middle + place(random, -spread, spread, on_raster);
     if (round % 5 == 0) to[round / 5 % 3] = from[round / 5 % 3];
-    if (round % 7 == 0) to.x() = from.x() + random.uniform(-60.0, 60.0);
+    if (round % 7 == 0) to = from + random.uniform(-60.0, 60.0) * way;
     const bool hits = random.chance(0.5);
     scan.begin(lower_brick, counts);
     scan.cast(from, to, hits, nullptr);
     expect_ray(seen_of(scan), from, to, hits, lower, upper);
   }
+}
+
+TEST(RayScan, MeetsTheVoxelsThatABruteForceCasterMeets) {
+  Random random(3);
+  expect_rays({1, 1, 0}, {2, 2, 2}, Vec3(1.0, 0.05, -0.1), 400, random);
+  expect_rays({0, 2, 1}, {1, 17, 1}, Vec3(-0.05, 1.0, 0.1), 120, random);  // words along y too
 }
 
 TEST(RayScan, AScanIsTheUnionOfItsRaysAndBeginForgetsTheOneBefore) {
@@ -136,7 +141,8 @@ TEST(RayScan, RaysThatAreAlmostStraightOrFarAwayStayInsideTheBox) {
 BrickMap floor_map() {
   BrickMap map = BrickMap::make({64, 24, 16}, {}).value();
   for (int y = 0; y < 3; ++y) {
-    for (int row = 0; row < 8; ++row) map.write({0, y, 0}, row + 16, ~std::uint64_t{0}, ~std::uint64_t{0});
+    for (int row = 0; row < 8; ++row)
+      map.write({0, y, 0}, row + 16, ~std::uint64_t{0}, ~std::uint64_t{0});
   }
   return map;
 }

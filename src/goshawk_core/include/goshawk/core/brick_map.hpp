@@ -86,7 +86,15 @@ class BrickMap {
     return unsigned(b.x) < unsigned(counts_.x) && unsigned(b.y) < unsigned(counts_.y) &&
            unsigned(b.z) < unsigned(counts_.z);
   }
-  bool bit(Index3 voxel, Words Bits::* words) const;
+  bool bit(Index3 v, Words Bits::*words) const {
+    if (unsigned(v.x) >= unsigned(size_.x) || unsigned(v.y) >= unsigned(size_.y) ||
+        unsigned(v.z) >= unsigned(size_.z)) {
+      return false;
+    }
+    const Bits* bits = find({v.x >> 6, v.y >> 3, v.z >> 3});
+    return bits != nullptr &&
+           ((bits->*words)[std::size_t(8 * (v.z & 7) + (v.y & 7))] >> (v.x & 63) & 1U);
+  }
   Bits& own(Index3 brick);
   Word growing(const Bits* bits, int row, Word inside) const;
   void mark_rows(Index3 brick, std::uint64_t rows);
