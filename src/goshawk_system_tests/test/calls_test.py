@@ -246,5 +246,56 @@ class Worlds(CallsCase):
                          second_opinion.OccupiedCubes(self.sandbox.folder / "c.bt").cubes)
 
 
+class MapFiles(CallsCase):
+    def goshawk_map(self, *arguments):
+        outcome = self.sandbox.goshawk("map", *arguments, "--json")
+        self.assertEqual(outcome.status, DONE, str(outcome))
+        return self.json_object(outcome)
+
+    def halves(self):
+        """A world, and what is left and right of x = 3 m in it."""
+        world, left, right = (self.sandbox.folder / f"{name}.bt"
+                              for name in ("world", "left", "right"))
+        self.assertEqual(self.sandbox.goshawk("world", world).status, DONE)
+        self.goshawk_map("crop", world, left, "--lower=-9,-9,-9", "--upper", "3,19,9")
+        self.goshawk_map("crop", world, right, "--lower", "3,-9,-9", "--upper", "19,19,9")
+        return world, left, right
+
+    def test_halves_make_the_whole(self):
+        world, left, right = self.halves()
+        cubes = {path: second_opinion.OccupiedCubes(path).cubes for path in (world, left, right)}
+        self.assertEqual(cubes[left] | cubes[right], cubes[world])
+        self.assertFalse(cubes[left] & cubes[right])
+        both = self.sandbox.folder / "both.ot"
+        said = self.goshawk_map("merge", both, left, right)
+        self.assertEqual(said["occupied_voxels"], len(cubes[world]))
+        self.assertTrue(self.goshawk_map("diff", world, both)["same"])
+        self.assertEqual(self.goshawk_map("info", world)["free_voxels"],
+                         self.goshawk_map("info", both)["free_voxels"])
+
+    def test_differences_are_counted(self):
+        world, left, right = self.halves()
+        said = self.goshawk_map("diff", left, world)
+        info = self.goshawk_map("info", right)
+        self.assertFalse(said["same"])
+        self.assertEqual(said["learnt_voxels"], info["occupied_voxels"] + info["free_voxels"])
+        self.assertEqual((said["appeared_voxels"], said["vanished_voxels"]), (0, 0))
+        self.assertEqual(self.goshawk_map("diff", world, left)["forgotten_voxels"],
+                         said["learnt_voxels"])
+
+    def test_wrong_maps_are_refused(self):
+        world, left, _ = self.halves()
+        coarse = self.sandbox.folder / "coarse.bt"
+        self.assertEqual(self.sandbox.goshawk("world", coarse, "--resolution", "0.4").status, DONE)
+        self.expect(["map", "merge", "all.bt", world, coarse], NOT_DONE, "invalid_input", "0.4")
+        self.expect(["map", "info", "/no/such/map.bt"], NOT_DONE, "map_unreadable", "/no/such")
+        self.expect(["map", "crop", left, "out.bt", "--lower", "50,50,0", "--upper", "60,60,1"],
+                    NOT_DONE, "map_empty")
+        self.expect(["map", "crop", left, "/no/such/out.bt", "--lower", "0,0,0", "--upper",
+                     "1,1,1"], NOT_DONE, "io_failed", "/no/such")
+        self.expect(["map", "save", "out.bt", "--timeout", "0.2"], NOT_DONE, "stage_silent",
+                    "octomap_binary")
+
+
 if __name__ == "__main__":
     harness.main()
