@@ -102,6 +102,14 @@ class SummaryTest(unittest.TestCase):
         (folder / "tools.xml").write_text("<testsuite><testca")
         self.expect("0 passed, 1 failed", False)
 
+    def test_ends_with_the_slowest_tests_and_the_names_of_what_failed(self):
+        self.package("a", [ctest(f"t{k}", "failed" if k == 3 else "passed", Execution_Time=k)
+                           for k in range(1, 13)])
+        lines = self.expect("11 passed, 1 failed", False).splitlines()
+        self.assertEqual(lines[-12], "   12.0 s  a/t12")
+        self.assertEqual(lines[-3], "    3.0 s  a/t3")
+        self.assertEqual(lines[-2], "failed   a/t3")
+
     def test_fails_if_no_test_ran(self):
         self.assertIn("no test ran", self.expect("0 passed, 0 failed", False))
         self.build = self.build / "absent"

@@ -11,7 +11,7 @@ namespace goshawk::bench {
 class Child {
  public:
   /// @param words program and arguments; @param domain its ROS_DOMAIN_ID
-  /// @throws std::runtime_error where it cannot be started
+  /// @throws std::runtime_error if it cannot be started
   Child(const std::vector<std::string>& words, int domain);
   ~Child();
   Child(const Child&) = delete;

@@ -39,7 +39,7 @@ std::vector<Timing> compare(const std::string& name, const std::vector<Contender
 /// @return [us] what one run takes, for work that cannot be repeated
 double time_us(const std::function<void()>& run, Clock clock);
 
-/// @return the nearest rank at a share in [0, 1] of sorted numbers; 0 where there are none
+/// @return the nearest rank at a share in [0, 1] of sorted numbers; 0 if there are none
 double at_share(const std::vector<double>& sorted, double share);
 
 /// Of any numbers, nearest rank. @pre not empty (throws else)

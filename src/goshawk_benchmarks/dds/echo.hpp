@@ -24,7 +24,7 @@ struct Flood {
 /// The side that asks: meets an echo, then measures.
 class Asker {
  public:
-  /// @throws std::runtime_error where no echo is found within 20 s
+  /// @throws std::runtime_error if no echo is found within 20 s
   Asker(const LinkOptions& options, Member& member);
 
   /// @param pause_s between an answer and the next question

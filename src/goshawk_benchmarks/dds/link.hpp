@@ -38,7 +38,7 @@ std::int64_t steady_ns();
 /// A participant of the domain with the transports of a way.
 class Member {
  public:
-  /// @throws std::runtime_error where the domain cannot be joined
+  /// @throws std::runtime_error if the domain cannot be joined
   explicit Member(const LinkOptions& options);
   ~Member();
   struct Impl;

@@ -36,7 +36,7 @@ World office(Index3 size, std::uint64_t seed);
 World forest(Index3 size, double ratio, std::uint64_t seed);
 
 /// A Warframe map with as many of its problems, spread over the file. @return a world without
-/// queries where the files of that name are missing
+/// queries if the files of that name are missing
 World warframe(const std::string& name, std::size_t problems);
 
 /// A Warframe map with those of its problems whose paths are longest beside the empty grid's.
@@ -46,7 +46,7 @@ World warframe_hard(const std::string& name, std::size_t problems);
 World walled(World world);
 
 /// An OctoMap file of the data folder, unknown space blocked, grown by 0.2 m, with random pairs of
-/// voxels that are joined. @return a world without queries where the file is missing
+/// voxels that are joined. @return a world without queries if the file is missing
 World octomap(const std::string& name, std::size_t queries);
 
 /// The folder with maps of the world: GOSHAWK_DATA, or ../shared/data.

@@ -71,7 +71,7 @@ Qos answered_by() {
                                                     : Qos::reliable_last(100);
 }
 
-/// [ns] in the core, or nothing where the answer does not tell
+/// [ns] in the core, or nothing if the answer does not tell
 template <typename Output>
 std::optional<std::int64_t> compute_ns_of(const Output& m) {
   if constexpr (requires { m.compute_ns(); }) return m.compute_ns();

@@ -80,7 +80,7 @@ std::string about_stray(const std::string& word, const CLI::App& app) {
   return fmt::format("there is no verb '{}'{}{}", word, did_you_mean(word, verbs), more);
 }
 
-/// CLI11's sentence, in our words where its are hard to read.
+/// CLI11's sentence, in our words if its own are hard to read.
 std::string about(const CLI::ParseError& error, const CLI::App& app) {
   const std::string text = error.what();
   const std::string conversion = "Could not convert: ";

@@ -24,7 +24,7 @@ inline int domain() {
 }
 
 struct Outcome {
-  int status = -1;  // exit status; -signal where one ended it
+  int status = -1;  // exit status; -signal if one ended it
   std::string out;
   std::string err;
 };

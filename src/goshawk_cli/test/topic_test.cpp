@@ -206,7 +206,7 @@ TEST_F(Verbs, ListsNodes) {
   EXPECT_EQ(json["nodes"][0]["process"], "goshawk_" + std::to_string(getpid()));
 }
 
-/// What is not there costs the whole timeout: a short one, and a longer one where the machine had
+/// What is not there costs the whole timeout: a short one, and a longer one if the machine had
 /// not found the others by then.
 Outcome miss(const std::vector<std::string>& arguments) {
   Outcome outcome;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -27,7 +26,7 @@ struct Span {
   int last;
 };
 
-/// The voxels of one axis that an interval may lie in. Two ways only where it is within the touch
+/// The voxels of one axis that an interval may lie in. Two ways only if it is within the touch
 /// of one face: below that face, or above it.
 struct Ways {
   std::array<Span, 2> spans;
@@ -48,26 +47,19 @@ Ways ways_of(double lo, double hi, double touch, int size) {
   return {{{{below, below}, {above, above}}}, 2};
 }
 
-std::optional<Index3> blocked_in_row(const BitGrid& grid, Span x, int y, int z) {
-  const Index3 size = grid.size();
+std::optional<Index3> blocked_in_row(const FreeSpace::View& space, Span x, int y, int z) {
+  const Index3 size = space.grid->grown.size();
   if (x.first < 0) return Index3{-1, y, z};
   if (x.last >= size.x) return Index3{size.x, y, z};
-  const BitGrid::Word* row = grid.row(y, z);
-  for (int w = x.first >> 6; w <= x.last >> 6; ++w) {
-    BitGrid::Word bits = row[w];
-    if (w == x.first >> 6) bits &= ~BitGrid::Word{0} << (x.first & 63);
-    if (w == x.last >> 6) bits &= ~BitGrid::Word{0} >> (63 - (x.last & 63));
-    if (bits != 0) return Index3{64 * w + std::countr_zero(bits), y, z};
-  }
-  return {};
+  return first_blocked(space, x.first, x.last, y, z);
 }
 
-std::optional<Index3> blocked_in(const BitGrid& grid, Span x, Span y, Span z) {
-  const Index3 size = grid.size();
+std::optional<Index3> blocked_in(const FreeSpace::View& space, Span x, Span y, Span z) {
+  const Index3 size = space.grid->grown.size();
   for (int k = z.first; k <= z.last; ++k) {
     for (int j = y.first; j <= y.last; ++j) {
       if (j < 0 || k < 0 || j >= size.y || k >= size.z) return Index3{x.first, j, k};
-      if (const auto voxel = blocked_in_row(grid, x, j, k)) return voxel;
+      if (const auto voxel = blocked_in_row(space, x, j, k)) return voxel;
     }
   }
   return {};
@@ -84,13 +76,13 @@ void halve(const Points& curve, Points& left, Points& right) {
 
 class Prover {
  public:
-  Prover(const BitGrid& grid, double touch) : grid_(grid), touch_(touch) {}
+  Prover(const FreeSpace::View& space, double touch) : space_(space), touch_(touch) {}
 
   /// @param curve [voxels] @param begin, end of it in the piece's own time, 0 to 1
   /// @return whether it is free; else obstruction() has the first place
   bool prove(const Points& curve, double begin, double end, int depth = 0) {
     const Vec3 lo = curve.rowwise().minCoeff(), hi = curve.rowwise().maxCoeff();
-    const Index3 size = grid_.size();
+    const Index3 size = space_.grid->grown.size();
     const std::array ways{ways_of(lo.x(), hi.x(), touch_, size.x),
                           ways_of(lo.y(), hi.y(), touch_, size.y),
                           ways_of(lo.z(), hi.z(), touch_, size.z)};
@@ -100,7 +92,7 @@ class Prover {
     for (int i = 0; i < ways[0].count; ++i) {
       for (int j = 0; j < ways[1].count; ++j) {
         for (int k = 0; k < ways[2].count; ++k) {
-          voxel = blocked_in(grid_, ways[0].spans[i], ways[1].spans[j], ways[2].spans[k]);
+          voxel = blocked_in(space_, ways[0].spans[i], ways[1].spans[j], ways[2].spans[k]);
           if (!voxel) return true;
         }
       }
@@ -127,20 +119,19 @@ class Prover {
 
   // The whole curve in one voxel, which is blocked: shorter parts will not be free.
   static bool is_inside_one(const std::array<Ways, 3>& ways) {
-    return std::ranges::all_of(ways, [](const Ways& w) {
-      return w.count == 1 && w.spans[0].first == w.spans[0].last;
-    });
+    return std::ranges::all_of(
+        ways, [](const Ways& w) { return w.count == 1 && w.spans[0].first == w.spans[0].last; });
   }
 
-  const BitGrid& grid_;
+  FreeSpace::View space_;
   double touch_;
   int parts_ = 0;
   Obstruction obstruction_;
 };
 
-std::optional<Obstruction> obstruction_of_part(const VoxelGrid& grid, const BezierPiece& piece,
-                                               double begin, double end) {
-  const auto& g = grid.geometry;
+std::optional<Obstruction> obstruction_of_part(const FreeSpace::View& space,
+                                               const BezierPiece& piece, double begin, double end) {
+  const auto& g = space.grid->geometry;
   Points curve = (piece.control_points.colwise() - g.origin_map) / g.resolution_m;
   // NaN as well: neither is anywhere in a grid.
   if (!(curve.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() < kFarthest)) {
@@ -163,30 +154,29 @@ std::optional<Obstruction> obstruction_of_part(const VoxelGrid& grid, const Bezi
     }
     curve = kept;
   }
-  Prover prover(grid.grown, kTouch_m / g.resolution_m);
+  Prover prover(space, kTouch_m / g.resolution_m);
   if (prover.prove(curve, begin, end)) return {};
   Obstruction found = prover.obstruction();
   found.time_s *= piece.duration_s;
   return found;
 }
 
-}  // namespace
-
-std::optional<Obstruction> find_obstruction(const VoxelGrid& grid, const BezierPiece& curve,
-                                            double from_s, double to_s) {
+std::optional<Obstruction> obstruction_of(const FreeSpace::View& space, const BezierPiece& curve,
+                                          double from_s, double to_s) {
   const double begin = std::clamp(from_s / curve.duration_s, 0.0, 1.0);
   const double end = std::clamp(to_s / curve.duration_s, begin, 1.0);
-  return obstruction_of_part(grid, curve, begin, end);
+  return obstruction_of_part(space, curve, begin, end);
 }
 
-std::optional<Obstruction> find_obstruction(const VoxelGrid& grid, const Trajectory& trajectory,
-                                            double from_s, double to_s) {
+std::optional<Obstruction> obstruction_of(const FreeSpace::View& space,
+                                          const Trajectory& trajectory, double from_s,
+                                          double to_s) {
   double begin_s = 0.0;
   for (const auto& piece : trajectory.pieces) {
     const double from = std::max(0.0, (from_s - begin_s) / piece.duration_s);
     const double to = std::min(1.0, (to_s - begin_s) / piece.duration_s);
     if (from < 1.0 && from <= to) {
-      if (auto found = obstruction_of_part(grid, piece, from, to)) {
+      if (auto found = obstruction_of_part(space, piece, from, to)) {
         found->time_s += begin_s;
         return found;
       }
@@ -196,22 +186,57 @@ std::optional<Obstruction> find_obstruction(const VoxelGrid& grid, const Traject
   return {};
 }
 
-std::string to_text(const VoxelGrid& grid, const Obstruction& found) {
-  const char* what = !grid.grown.contains(found.voxel) ? "its edge"
-                     : grid.unknown_is_occupied && !grid.is_known(found.voxel)
-                         ? "unknown space"
-                         : "an obstacle";
-  return fmt::format("map {} has {} at {} m", grid.version, what,
-                     to_text(grid.geometry.center(found.voxel)));
-}
-
-Status check_against(const VoxelGrid& grid, const CommittedTrajectory& committed, double from_s) {
-  const auto found = find_obstruction(grid, committed.flown(), from_s,
-                                      std::numeric_limits<double>::infinity());
+Status check_in(const FreeSpace::View& space, const CommittedTrajectory& committed, double from_s) {
+  const auto found =
+      obstruction_of(space, committed.flown(), from_s, std::numeric_limits<double>::infinity());
   if (!found) return success();
   return fail(ErrorCode::trajectory_blocked,
               fmt::format("trajectory {} is blocked {:.3g} s after its start: {}", committed.id(),
-                          found->time_s, to_text(grid, *found)));
+                          found->time_s, to_text(*space.grid, *found)));
+}
+
+}  // namespace
+
+std::optional<Obstruction> find_obstruction(const VoxelGrid& grid, const BezierPiece& curve,
+                                            double from_s, double to_s) {
+  return obstruction_of({&grid, {}}, curve, from_s, to_s);
+}
+
+std::optional<Obstruction> find_obstruction(const VoxelGrid& grid, const Trajectory& trajectory,
+                                            double from_s, double to_s) {
+  return obstruction_of({&grid, {}}, trajectory, from_s, to_s);
+}
+
+std::optional<Obstruction> find_obstruction(const FreeSpace& space, const BezierPiece& curve,
+                                            double from_s, double to_s) {
+  return obstruction_of(space.view(), curve, from_s, to_s);
+}
+
+std::optional<Obstruction> find_obstruction(const FreeSpace& space, const Trajectory& trajectory,
+                                            double from_s, double to_s) {
+  return obstruction_of(space.view(), trajectory, from_s, to_s);
+}
+
+std::string to_text(const VoxelGrid& grid, const Obstruction& found) {
+  const std::string place = to_text(grid.geometry.center(found.voxel));
+  if (!grid.grown.contains(found.voxel)) {
+    return fmt::format("map {} has its edge at {} m", grid.version, place);
+  }
+  if (!grid.grown.get(found.voxel)) {
+    return fmt::format("map {} has space that was never seen within {:.3g} m of {} m", grid.version,
+                       grid.inflation_m, place);
+  }
+  const bool unknown = grid.unknown_is_occupied && !grid.is_known(found.voxel);
+  return fmt::format("map {} has {} at {} m", grid.version,
+                     unknown ? "unknown space" : "an obstacle", place);
+}
+
+Status check_against(const VoxelGrid& grid, const CommittedTrajectory& committed, double from_s) {
+  return check_in({&grid, {}}, committed, from_s);
+}
+
+Status check_against(const FreeSpace& space, const CommittedTrajectory& committed, double from_s) {
+  return check_in(space.view(), committed, from_s);
 }
 
 }  // namespace goshawk

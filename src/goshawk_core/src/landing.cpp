@@ -11,7 +11,7 @@ std::string metres(double value) {
   return fmt::format("{:.3g} m", value);
 }
 
-/// The highest layer that the ground, grown, can block; negative where the map begins above it.
+/// The highest layer that the ground, grown, can block; negative if the map begins above it.
 int highest_of_ground(const VoxelGrid& grid, double land_height_m) {
   const auto& g = grid.geometry;
   const double layer = std::floor((land_height_m - g.origin_map.z()) / g.resolution_m);

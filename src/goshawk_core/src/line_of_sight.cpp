@@ -54,7 +54,7 @@ struct Interval {
 };
 
 // The part of the segment a + t d, t in [t0, t1], whose coordinate `axis` lies in [lo, hi], as an
-// interval of t; empty (lo > hi) where there is none.
+// interval of t; empty (lo > hi) if there is none.
 // @param inverse 1 / d, element by element
 Interval clip(const Vec3& a, const Vec3& d, const Vec3& inverse, int axis, double lo, double hi,
               Interval t) {

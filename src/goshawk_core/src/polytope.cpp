@@ -17,7 +17,7 @@ using Faces = std::span<const HalfSpace>;
 // Maximise r subject to n . x + r <= b: a linear programme in (x, r). Solved by the simplex
 // method on its dual, whose basis is four constraints and whose multipliers are the current
 // (x, r): the constraint most violated by it enters. Starts from a tetrahedron so large that it
-// only stays in the basis where the polytope is unbounded.
+// only stays in the basis if the polytope is unbounded.
 //
 // The inverse of the basis is kept and corrected by one pivot an iteration; it is computed anew
 // before the answer is believed, and after every few pivots, so that rounding does not gather.
@@ -77,7 +77,7 @@ class LargestBall {
     return room;
   }
 
-  // The entering constraint takes the place of one of the basis. @return false where none can
+  // The entering constraint takes the place of one of the basis. @return false if none can
   // leave, which finite data do not allow: the dual is bounded
   bool pivot() {
     const Row4 direction = inverse_.transpose() * entering_;

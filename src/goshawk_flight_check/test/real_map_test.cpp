@@ -1,4 +1,4 @@
-// A scanned building floor; skipped where the shared data is not there.
+// A scanned building floor; skipped if the shared data is not there.
 #include <gtest/gtest.h>
 
 #include <cstdlib>

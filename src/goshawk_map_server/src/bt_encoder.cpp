@@ -63,7 +63,7 @@ class BtEncoder {
     return occupied_.get(i) ? occupied_space : free_space;
   }
 
-  // What all voxels of a block are, or nothing where they differ or some lie outside the grid.
+  // What all voxels of a block are, or nothing if they differ or some lie outside the grid.
   std::optional<Content> uniform(Index3 at, int side) const {
     const Index3 last{at.x + side - 1, at.y + side - 1, at.z + side - 1};
     if (!occupied_.contains(at) || !occupied_.contains(last)) return {};

@@ -12,7 +12,7 @@ namespace goshawk::map_server {
 /// child) that says what the bits say. Built from the voxels up, so that uniform regions become
 /// one leaf without a tree of single voxels in between.
 /// @param lower_key OctoMap key of voxel (0, 0, 0) @param known empty: all voxels are known
-/// @return empty where nothing is known
+/// @return empty if nothing is known
 std::string encode_bt(Index3 lower_key, const BitGrid& occupied, const BitGrid& known);
 
 /// @return nodes of the tree that a payload describes, leaves included: the header's "size"

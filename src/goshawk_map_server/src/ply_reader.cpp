@@ -257,7 +257,7 @@ Status CloudBuilder::read_rows(const Element& element, Values& values) {
   return success();
 }
 
-// A polygon becomes a fan, which covers it even where it is not convex; an edge a triangle without
+// A polygon becomes a fan, which covers it even if it is not convex; an edge a triangle without
 // area. A strip's -1 begins a new one.
 void CloudBuilder::add(const Element& element) {
   if (element.name == "tristrips") {

@@ -27,7 +27,7 @@ RawVoxels random_raw(Random& random) {
   return raw;
 }
 
-// corrections.md, Inflation, by its words: the distance between two cubes is less than the radius.
+// By the words of the definition (docs/method.md): the distance between two cubes is less than the radius.
 bool near_by_definition(const RawVoxels& raw, Index3 a, Index3 b, double radius_m) {
   const double res = raw.geometry.resolution_m;
   const auto gap_m = [&](int i, int j) { return std::max(0, std::abs(i - j) - 1) * res; };

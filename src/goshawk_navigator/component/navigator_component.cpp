@@ -215,8 +215,8 @@ class NavigatorComponent : public Component {
         reporter_.fault(leg.error());
         continue;
       }
-      stored->memory.legs.push_back({.committed = *std::move(leg),
-                                     .brakes = m.nominal().implementation() == kBrakeName});
+      stored->memory.legs.push_back(
+          {.committed = *std::move(leg), .brakes = m.nominal().implementation() == kBrakeName});
       published_.push_back(std::move(m));
     }
     navigator_.resume(std::move(stored->memory), node_.monotonic_ns());
@@ -243,7 +243,8 @@ class NavigatorComponent : public Component {
     const auto orders = navigator_.take_orders();
     if (orders.empty()) return;
     for (const Order& order : orders) {
-      if (const auto* commit = std::get_if<Commit>(&order)) published_.push_back(message_of(*commit));
+      if (const auto* commit = std::get_if<Commit>(&order))
+        published_.push_back(message_of(*commit));
     }
     const auto legs = published_;
     remember();
@@ -268,15 +269,21 @@ class NavigatorComponent : public Component {
     reporter_.send(requests_, m);
   }
 
-  /// As it is published: the nominal part as its optimizer sent it.
+  /// As it is published: the nominal part as its optimizer sent it, under the commit's own id.
   PublishedLeg message_of(const Commit& commit) const {
     const CommittedTrajectory& committed = commit.trajectory;
     const auto known = std::ranges::find(published_, committed.id(), &id_of);
     if (known != published_.end()) return *known;
     const auto* answer = answers_.find(commit.answer);
+    const auto continued = std::ranges::find(published_, commit.continues, &id_of);
     PublishedLeg m;
     m.header(conversions::make_header(node_.now_ns()));
-    m.nominal(answer != nullptr ? answer->message : nominal_of(committed));
+    if (continued != published_.end()) {
+      m.nominal(continued->nominal());
+      m.nominal().request().id(committed.id());
+    } else {
+      m.nominal(answer != nullptr ? answer->message : nominal_of(committed));
+    }
     conversions::fill_msg(committed, m);
     m.start_time(conversions::to_stamp(to_wall_ns(committed.start_time_ns())));
     return m;

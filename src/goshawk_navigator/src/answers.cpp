@@ -6,9 +6,9 @@
 
 #include <algorithm>
 
-#include "times.hpp"
 #include "goshawk/core/free_curve.hpp"
 #include "goshawk/navigator/navigator.hpp"
+#include "times.hpp"
 
 namespace goshawk::navigator {
 namespace {
@@ -34,6 +34,7 @@ void Navigator::on_trajectory(Commitment candidate, std::uint64_t number, std::i
 }
 
 void Navigator::take_answer(Commitment candidate, std::uint64_t number, std::int64_t now_ns) {
+  if (open_->improves) return take_improvement(std::move(candidate), number, now_ns);
   const PlanRequest& request = open_->request;
   if (auto status = check_answer(candidate, request, open_->goal_moved_m); !status) {
     return refuse_answer(status.error());
@@ -46,14 +47,16 @@ void Navigator::take_answer(Commitment candidate, std::uint64_t number, std::int
                   now_ns);
   }
   if (wait_for_map(candidate, number, now_ns)) return;
-  candidate.start_time_ns =
-      request.start_time_ns.value_or(now_ns + to_ns(config_.commit_lead_s));
+  candidate.start_time_ns = request.start_time_ns.value_or(now_ns + to_ns(config_.commit_lead_s));
   candidate.yaw_rad = pursuit_.goal.yaw_rad;
+  if (auto status = add_stop(candidate, !open_->from_motion()); !status) {
+    return act_on(status.error(), now_ns);
+  }
   auto committed = CommittedTrajectory::make(std::move(candidate));
   if (!committed) return refuse_answer(committed.error());
-  if (map_ != nullptr) {
-    if (auto status = check_against(*map_, *committed, 0.0); !status) {
-      if (committed->map_version() >= map_->version) return refuse_answer(status.error());
+  if (map() != nullptr) {
+    if (auto status = check_against(space_, *committed, 0.0); !status) {
+      if (committed->map_version() >= map()->version) return refuse_answer(status.error());
       return act_on(status.error(), now_ns);  // planned in an older map: it was right to try
     }
   }
@@ -75,14 +78,14 @@ void Navigator::on_bad_answer(std::uint64_t id, const Error& why) {
 // @return whether the answer now waits, or is refused because its map does not come
 bool Navigator::wait_for_map(const Commitment& candidate, std::uint64_t number,
                              std::int64_t now_ns) {
-  if (map_ == nullptr && !config_.require_map) return false;
-  if (map_ != nullptr && map_->version >= candidate.map_version) return false;
+  if (map() == nullptr && !config_.require_map) return false;
+  if (map() != nullptr && map()->version >= candidate.map_version) return false;
   if (!pending_) {
     pending_ = Pending{candidate, number, now_ns + to_ns(config_.map_wait_s)};
   } else if (pending_->number != number) {  // another one waits already
-    refuse_answer(fail(ErrorCode::no_map,
-                       fmt::format("it was planned in map version {}, which has not come",
-                                   candidate.map_version)));
+    refuse_answer(
+        fail(ErrorCode::no_map, fmt::format("it was planned in map version {}, which has not come",
+                                            candidate.map_version)));
   }
   return true;
 }
@@ -93,12 +96,12 @@ void Navigator::check_pending(std::int64_t now_ns) {
   pending_.reset();
   if (!open_) return;
   act_on(fail(ErrorCode::no_map,
-              map_ == nullptr
+              map() == nullptr
                   ? std::string("no map has come yet on map/voxels, so that no plan can be "
                                 "checked: is the map server running?")
                   : fmt::format("the answer was planned in map version {}, but version {} is the "
                                 "newest here",
-                                version, map_->version)),
+                                version, map()->version)),
          now_ns);
 }
 
@@ -178,13 +181,15 @@ void Navigator::pursue_again(const Error& why, std::int64_t now_ns) {
 }
 
 void Navigator::on_map(std::shared_ptr<const VoxelGrid> grid, std::int64_t now_ns) {
-  map_ = std::move(grid);
+  space_.set_map(std::move(grid));
   map_changed_ns_ = now_ns;
-  if (pending_ && open_ && map_->version >= pending_->candidate.map_version) {
+  if (pending_ && open_ && map()->version >= pending_->candidate.map_version) {
     auto pending = *std::exchange(pending_, {});
     take_answer(std::move(pending.candidate), pending.number, now_ns);
   }
   check_legs(now_ns);
+  move_stop(now_ns);
+  improve(now_ns);
 }
 
 // A goal that failed because of the map is taken up again when the map has changed since.
@@ -208,8 +213,8 @@ void Navigator::check_legs(std::int64_t now_ns) {
     if (from_ns >= until_ns) continue;
     const double from_s = double(from_ns - leg.start_ns()) * 1e-9;
     const double to_s = double(until_ns - leg.start_ns()) * 1e-9;
-    if (!find_obstruction(*map_, leg.committed.flown(), from_s, to_s)) continue;
-    return blocked(check_against(*map_, leg.committed, from_s).error(), now_ns);
+    if (!find_obstruction(space_, leg.committed.flown(), from_s, to_s)) continue;
+    return blocked(check_against(space_, leg.committed, from_s).error(), now_ns);
   }
 }
 

@@ -23,7 +23,10 @@ std::string_view to_string(State state) {
 }
 
 Navigator::Navigator(const Config& config, std::uint64_t first_id)
-    : config_(config), next_id_(first_id) {}
+    : config_(config),
+      next_id_(first_id),
+      space_(config.fly_unknown),
+      latency_s_(config.replan_lead_s / 2.0) {}
 
 Status Navigator::reconfigure(const Config& config) {
   ParameterFaults faults;
@@ -103,6 +106,7 @@ void Navigator::tick(std::int64_t now_ns) {
   plan(now_ns);
   check_revoked(now_ns);
   check_arrival(now_ns);
+  improve(now_ns);
   say_what_is_flown(now_ns);
 }
 
@@ -113,12 +117,13 @@ void Navigator::check_arrival(std::int64_t now_ns) {
   const double distance_m = (vehicle_.position_map - end_map).norm();
   if (odometry_is_fresh(now_ns) && at_rest() && distance_m < config_.arrival_tolerance_m) {
     pursuit_.failures = 0;
+    if (leg->stops_early(config_.arrival_tolerance_m)) return rest_before_goal(now_ns);
     const double moved_m = (end_map - pursuit_.goal.position_map).norm();
-    return enter(State::arrived, now_ns,
-                 {ErrorCode::ok, moved_m > 1e-3
-                                     ? fmt::format("{:.3g} m from the goal, as the search moved it",
-                                                   moved_m)
-                                     : ""});
+    return enter(
+        State::arrived, now_ns,
+        {ErrorCode::ok, moved_m > 1e-3
+                            ? fmt::format("{:.3g} m from the goal, as the search moved it", moved_m)
+                            : ""});
   }
   if (now_ns - leg->end_ns() < to_ns(config_.settle_timeout_s)) return;
   pursue_again(fail(ErrorCode::tracking_lost,

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <array>
 
-#include "times.hpp"
 #include "goshawk/core/free_curve.hpp"
 #include "goshawk/navigator/brake.hpp"
 #include "goshawk/navigator/navigator.hpp"
+#include "times.hpp"
 
 namespace goshawk::navigator {
 namespace {
@@ -57,11 +57,14 @@ void Navigator::plan(std::int64_t now_ns) {
 }
 
 Navigator::Start Navigator::start_in_flight(std::int64_t now_ns) const {
-  const std::int64_t time_ns = std::max({now_ns + to_ns(pursuit_.lead_s), pursuit_.not_before_ns,
-                                         schedule_.legs().front().start_ns()});
+  return start_at(std::max({now_ns + to_ns(pursuit_.lead_s), pursuit_.not_before_ns,
+                            schedule_.legs().front().start_ns()}));
+}
+
+// On what will be flown then. @pre not before the first leg
+Navigator::Start Navigator::start_at(std::int64_t time_ns) const {
   const Leg& leg = *schedule_.at(time_ns);
-  Start start{
-      .state = leg.at(time_ns), .yaw_rad = yaw_of(vehicle_.q_map_base), .time_ns = time_ns};
+  Start start{.state = leg.at(time_ns), .yaw_rad = yaw_of(vehicle_.q_map_base), .time_ns = time_ns};
   start.state.jerk.setZero();
   if (time_ns >= leg.end_ns()) start.state = {.position = start.state.position};
   // Without a curve the tracker turns as fast as it can: where to is known, not how far it is.
@@ -85,8 +88,13 @@ Navigator::Start Navigator::start_at_rest(std::int64_t now_ns) const {
 
 void Navigator::ask(const Start& start, std::int64_t now_ns) {
   newest_id_ = next_id_++;
+  open(start, newest_id_, now_ns);
+  enter(schedule_.moves(now_ns) ? State::flying : State::planning, now_ns);
+}
+
+void Navigator::open(const Start& start, std::uint64_t id, std::int64_t now_ns) {
   PlanRequest request;
-  request.id = newest_id_;
+  request.id = id;
   request.stamp_ns = now_ns;
   request.start_time_ns = start.time_ns;
   request.start = start.state;
@@ -104,7 +112,6 @@ void Navigator::ask(const Start& start, std::int64_t now_ns) {
     request.deadline_s = std::min(request.deadline_s, std::max(left_s, 1e-3));
   }
   orders_.push_back(std::move(request));
-  enter(schedule_.moves(now_ns) ? State::flying : State::planning, now_ns);
 }
 
 // No answer to the open request is needed any more: the next one says so.
@@ -122,10 +129,10 @@ void Navigator::check_open(std::int64_t now_ns) {
     return act_on(reason, now_ns);
   }
   const std::uint64_t id = open_->request.id;
-  const std::string refused =
-      open_->refused == 0 ? ""
-                          : fmt::format("; {} answers were refused, the last because {}",
-                                        open_->refused, open_->why_refused);
+  const std::string refused = open_->refused == 0
+                                  ? ""
+                                  : fmt::format("; {} answers were refused, the last because {}",
+                                                open_->refused, open_->why_refused);
   const auto stage = to_string(next_stage(open_->last_stage));
   if (const auto too_late_ns = open_->too_late_ns(); too_late_ns && now_ns > *too_late_ns) {
     return act_on(fail(ErrorCode::deadline_exceeded,
@@ -148,18 +155,24 @@ void Navigator::act_on(const Error& reason, std::int64_t now_ns) {
   const bool from_motion = open_->from_motion();
   const std::int64_t asked_ns = open_->asked_ns;
   const Remedy remedy = remedy_of(reason.code, from_motion);
+  const bool improves = open_->improves;
   drop_open();
+  if (late && improves) latency_s_ = std::min(2.0 * latency_s_, config_.replan_lead_s);
+  if (improves) return;  // the next map, or the next moment, asks again
   if (remedy == Remedy::other_start || (late && from_motion)) {
     return try_other_start(reason, now_ns);
   }
   if (remedy == Remedy::wait) {
     return plan_again(reason, late ? 0.0 : kRetryDelay_s, now_ns);
   }
-  if (remedy == Remedy::other_map && !pursuit_.map_retry) {
-    pursuit_.map_retry = MapRetry{.until_ns = now_ns + to_ns(config_.map_retry_s),
-                                  .changed_after_ns = asked_ns - to_ns(kMapDelay_s)};
-  }
+  if (remedy == Remedy::other_map) wait_for_other_map(asked_ns, now_ns);
   give_up(reason, now_ns);
+}
+
+void Navigator::wait_for_other_map(std::int64_t asked_ns, std::int64_t now_ns) {
+  if (pursuit_.map_retry) return;
+  pursuit_.map_retry = MapRetry{.until_ns = now_ns + to_ns(config_.map_retry_s),
+                                .changed_after_ns = asked_ns - to_ns(kMapDelay_s)};
 }
 
 // In flight: a later start, then a slower one, then one at rest.
@@ -184,9 +197,11 @@ void Navigator::try_other_start(const Error& reason, std::int64_t now_ns) {
 void Navigator::plan_again(const Error& reason, double delay_s, std::int64_t now_ns) {
   drop_open();
   if (++pursuit_.failures >= config_.max_attempts) {
-    return give_up({reason.code,
-                    fmt::format("{} (after {} attempts)", reason.message, pursuit_.failures)},
-                   now_ns);
+    const bool unseen = reason.code == ErrorCode::trajectory_blocked && space_.asks_for_known();
+    if (unseen) wait_for_other_map(now_ns, now_ns);
+    return give_up(
+        {reason.code, fmt::format("{} (after {} attempts)", reason.message, pursuit_.failures)},
+        now_ns);
   }
   pursuit_.retry_ns = now_ns + to_ns(delay_s);
   plan(now_ns);
@@ -206,8 +221,7 @@ bool Navigator::brake(std::int64_t now_ns) {
   if (leg == nullptr || leg->brakes || begin_ns >= leg->end_ns()) return false;
   const double from_s = double(begin_ns - leg->start_ns()) * 1e-9;
   auto way = brake_along(leg->committed, from_s, [this](const Trajectory& trajectory) {
-    return map_ == nullptr ||
-           !find_obstruction(*map_, trajectory, 0.0, trajectory.duration_s());
+    return map() == nullptr || !find_obstruction(space_, trajectory);
   });
   if (!way) return false;
   const double yaw_rad = leg->committed.yaw_at(from_s + way->duration_s() / 2.0);

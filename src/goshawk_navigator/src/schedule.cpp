@@ -9,6 +9,13 @@ std::int64_t Leg::end_ns() const {
   return start_ns() + std::llround(committed.flown().duration_s() * 1e9);
 }
 
+bool Leg::stops_early(double tolerance_m) const {
+  if (!committed.stop()) return false;
+  const Trajectory& nominal = committed.nominal().trajectory();
+  return (at(end_ns()).position - nominal.sample(nominal.duration_s()).position).norm() >
+         tolerance_m;
+}
+
 FlatState Leg::at(std::int64_t time_ns) const {
   const Trajectory& flown = committed.flown();
   const double t_s = double(time_ns - start_ns()) * 1e-9;
@@ -16,7 +23,9 @@ FlatState Leg::at(std::int64_t time_ns) const {
 }
 
 void Schedule::add(Leg leg) {
-  std::erase_if(legs_, [&](const Leg& other) { return other.start_ns() >= leg.start_ns(); });
+  std::erase_if(legs_, [&](const Leg& other) {
+    return leg.continues ? other.start_ns() > leg.start_ns() : other.start_ns() >= leg.start_ns();
+  });
   legs_.push_back(std::move(leg));
 }
 
@@ -28,9 +37,12 @@ void Schedule::drop_refused(std::uint64_t id) {
 }
 
 void Schedule::forget_before(std::int64_t now_ns) {
-  const auto next = std::ranges::find_if(
-      legs_, [&](const Leg& leg) { return leg.start_ns() > now_ns; });
-  if (next - legs_.begin() > 1) legs_.erase(legs_.begin(), next - 1);
+  const auto next =
+      std::ranges::find_if(legs_, [&](const Leg& leg) { return leg.start_ns() > now_ns; });
+  if (next - legs_.begin() <= 1) return;
+  auto kept = next - 1;
+  while (kept != legs_.begin() && kept->continues && !kept->accepted) --kept;
+  legs_.erase(legs_.begin(), kept);
 }
 
 const Leg* Schedule::at(std::int64_t time_ns) const {

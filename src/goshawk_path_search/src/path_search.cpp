@@ -129,7 +129,9 @@ PathSearch* PathSearch::other_search(UnknownSpace unknown) {
                                                             : UnknownRule::costly;
   const bool blocked_anyway = rule == UnknownRule::blocked && given_map_->unknown_is_occupied &&
                               config_.unknown == UnknownRule::as_mapped;
-  if (rule == config_.unknown || blocked_anyway) return nullptr;
+  const bool free_anyway = rule == UnknownRule::free && !given_map_->unknown_is_occupied &&
+                           config_.unknown == UnknownRule::as_mapped;
+  if (rule == config_.unknown || blocked_anyway || free_anyway) return nullptr;
   auto& other = others_[rule];
   if (!other) {
     Config config = config_;

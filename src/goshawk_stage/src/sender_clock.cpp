@@ -12,6 +12,7 @@ namespace {
 constexpr std::size_t kWindow = 8;                  // messages
 constexpr std::int64_t kEarly_ns = 20'000'000;      // time servers agree better than this
 constexpr std::int64_t kLate_ns = 100'000'000;      // a message may be as long on its way
+constexpr std::int64_t kSet_ns = 1'000'000'000;     // no message is late by as much: a clock was set
 constexpr std::int64_t kMost_ns = 10'000'000'000;   // compensated: more is a clock nobody has set
 
 bool agrees(std::int64_t age_ns) {
@@ -21,12 +22,19 @@ bool agrees(std::int64_t age_ns) {
 }  // namespace
 
 void SenderClock::hear(std::int64_t stamp_ns, std::int64_t now_ns) {
+  // What came before the sender's clock was set says nothing of the clock that it has now.
+  if (!heard_.empty()) {
+    const Heard& last = heard_.back();
+    const std::int64_t leap_ns = (stamp_ns - last.stamp_ns) - (now_ns - last.now_ns);
+    if (std::abs(leap_ns) > kSet_ns) heard_.clear();
+  }
   heard_.push_back({stamp_ns, now_ns});
   if (heard_.size() > kWindow) heard_.pop_front();
 }
 
-std::int64_t SenderClock::skew_ns(std::int64_t wall_ns, std::int64_t now_ns) const {
-  if (heard_.empty()) return 0;
+std::int64_t SenderClock::skew_ns(std::int64_t wall_ns, std::int64_t now_ns,
+                                  std::int64_t sent_ns) const {
+  if (heard_.empty() || agrees(wall_ns - sent_ns)) return 0;
   const auto age_ns = [&](const Heard& h) { return h.now_ns + (wall_ns - now_ns) - h.stamp_ns; };
   // The newest one first: after either clock was set, the older ones are of another time.
   if (agrees(age_ns(heard_.back()))) return 0;

@@ -22,7 +22,11 @@ struct ClockPair {
     now_ns += kOneSecond / 2;
     clock.hear(true_wall_ns() - delay_ns + skew_ns, now_ns);
   }
-  std::int64_t skew_ns() const { return clock.skew_ns(wall_at_0_ns + now_ns, now_ns); }
+  /// Of a message that was sent long ago, so that its own stamp does not tell.
+  std::int64_t skew_ns() const { return skew_ns(0); }
+  std::int64_t skew_ns(std::int64_t sent_ns) const {
+    return clock.skew_ns(wall_at_0_ns + now_ns, now_ns, sent_ns);
+  }
 };
 
 TEST(SenderClock, SaysNothingBeforeTheFirstMessage) {
@@ -68,6 +72,23 @@ TEST(SenderClock, FollowsOwnAndForeignClocksThatAreSet) {
   pair.wall_at_0_ns -= 7 * kOneSecond;
   pair.send(-2 * kOneSecond, 1 * kOneMs);
   EXPECT_EQ(pair.skew_ns(), 0) << "older messages seem to come from the future";
+}
+
+TEST(SenderClock, ForgetsWhatCameBeforeTheClockOfAllHostsWasSet) {
+  ClockPair pair;
+  for (int k = 0; k < 8; ++k) pair.send(0, 1 * kOneMs);
+  pair.wall_at_0_ns -= 5 * kOneSecond;
+  pair.send(-5 * kOneSecond, 1 * kOneMs);
+  pair.send(-5 * kOneSecond, 300 * kOneMs);  // late, so that the others are asked
+  EXPECT_EQ(pair.skew_ns(), 0);
+}
+
+TEST(SenderClock, AMessageWhoseOwnStampAgreesIsDatedByIt) {
+  ClockPair pair;
+  for (int k = 0; k < 8; ++k) pair.send(0, 1 * kOneMs);
+  pair.wall_at_0_ns -= 5 * kOneSecond;  // of all hosts; the next regular message is still to come
+  EXPECT_EQ(pair.skew_ns(pair.wall_at_0_ns + pair.now_ns - 2 * kOneMs), 0);
+  EXPECT_EQ(pair.skew_ns(pair.wall_at_0_ns + pair.now_ns + 4 * kOneSecond), 5 * kOneSecond - kOneMs);
 }
 
 TEST(SenderClock, NamesASkewThatIsTooLarge) {

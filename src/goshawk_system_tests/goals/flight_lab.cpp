@@ -13,8 +13,9 @@ constexpr double kMessage_s = 0.001;  // over DDS
 
 }  // namespace
 
-FlightLab::FlightLab(std::shared_ptr<const VoxelGrid> map, std::uint64_t seed,
-                     const Delays& delays, const navigator::Config& config, const Vec3& home_map)
+FlightLab::FlightLab(std::shared_ptr<const VoxelGrid> map, std::uint64_t seed, const Delays& delays,
+                     const navigator::Config& config, const Vec3& home_map,
+                     const tracker::Config& tracker_config)
     : home_map_(home_map),
       map_(std::move(map)),
       random_(seed),
@@ -23,7 +24,7 @@ FlightLab::FlightLab(std::shared_ptr<const VoxelGrid> map, std::uint64_t seed,
       builder_(corridor_builder::CorridorBuilder::create({}).value()),
       optimizer_(trajectory_optimizer::TrajectoryOptimizer::create({}).value()),
       vehicle_(simulator::Quadrotor::create({}).value()),
-      tracker_(tracker::Tracker::create({}).value()),
+      tracker_(tracker::Tracker::create(tracker_config).value()),
       navigator_(config, 1) {
   set_map(map_);
   if (!vehicle_.reset(home_map_, 0.0)) throw std::logic_error("the vehicle does not start");
@@ -91,9 +92,10 @@ void FlightLab::step() {
     navigator_.tick(now);
     take_orders();
   }
-  if (auto status = vehicle_.advance(0.001); !status) throw std::logic_error(status.error().message);
+  if (auto status = vehicle_.advance(0.001); !status)
+    throw std::logic_error(status.error().message);
   max_speed_m_s_ = std::max(max_speed_m_s_, speed());
-  if (obstacle_distance_m(*map_, position(), kBody_m) < kBody_m) ++contacts_;
+  if (obstacle_distance_m(truth_ ? *truth_ : *map_, position(), kBody_m) < kBody_m) ++contacts_;
 }
 
 void FlightLab::in(double seconds, std::function<void()> act) {
@@ -110,6 +112,7 @@ void FlightLab::take_orders() {
 
 void FlightLab::obey(const PlanRequest& request) {
   ++plans_;
+  if (!planning_lives_) return;
   auto planned = plan(request);
   const bool late = random_.chance(delays_.late_share);
   const double delay_s = random_.uniform(delays_.plan_min_s, delays_.plan_max_s) +

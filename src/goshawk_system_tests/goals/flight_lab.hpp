@@ -29,15 +29,22 @@ struct Delays {
 class FlightLab {
  public:
   FlightLab(std::shared_ptr<const VoxelGrid> map, std::uint64_t seed, const Delays& delays = {},
-            const navigator::Config& config = {}, const Vec3& home_map = Vec3(3, 0, 1));
+            const navigator::Config& config = {}, const Vec3& home_map = Vec3(3, 0, 1),
+            const tracker::Config& tracker_config = {});
 
   /// From here on all stages have this map.
   void set_map(std::shared_ptr<const VoxelGrid> map);
 
+  /// What the vehicle touches, if the map does not show it all.
+  void set_truth(std::shared_ptr<const VoxelGrid> truth) { truth_ = std::move(truth); }
+  /// From here on no planning stage answers, or they do again.
+  void let_planning(bool live) { planning_lives_ = live; }
+
   Status goal(const Vec3& goal_map) { return goal(goal_map, 0.0); }
   Status goal(const Vec3& goal_map, double yaw_rad);
   /// Until `done` or for so long. @return whether `done` came
-  bool run(double at_most_s, const std::function<bool()>& done = [] { return false; });
+  bool run(
+      double at_most_s, const std::function<bool()>& done = [] { return false; });
 
   /// @return a free place that the search reaches from the first one
   Vec3 random_place();
@@ -87,6 +94,8 @@ class FlightLab {
 
   Vec3 home_map_;
   std::shared_ptr<const VoxelGrid> map_;
+  std::shared_ptr<const VoxelGrid> truth_;
+  bool planning_lives_ = true;
   Random random_;
   Delays delays_;
   path_search::PathSearch search_;

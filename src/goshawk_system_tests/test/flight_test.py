@@ -22,7 +22,7 @@ A_MAX_M_S2 = 2.0
 
 
 def png_size(path):
-    """Width and height of a PNG picture; ValueError where it is none."""
+    """Width and height of a PNG picture; ValueError if it is none."""
     head = pathlib.Path(path).read_bytes()[:24]
     if head[:8] != b"\x89PNG\r\n\x1a\n" or head[12:16] != b"IHDR":
         raise ValueError(f"{path} is no PNG picture")

@@ -9,6 +9,7 @@ import json
 import os
 import pathlib
 import random
+import resource
 import signal
 import socket
 import subprocess
@@ -61,7 +62,7 @@ def node_of(report):
 
 
 def data_file(test, relative):
-    """A file of the shared data; where it is absent the test is skipped, and says so."""
+    """A file of the shared data; if it is absent the test is skipped, and says so."""
     folders = [os.environ.get("GOSHAWK_DATA"), SOURCE.parent / "shared" / "data"]
     for folder in folders:
         if folder and (pathlib.Path(folder) / relative).is_file():
@@ -112,6 +113,7 @@ class Process:
             self.process = subprocess.Popen(self.command, stdin=stdin, stdout=out, stderr=err,
                                             env=env, cwd=cwd)
         self.begin = time.monotonic()
+        self._read, self._lines = 0, []  # [byte] of the output, and the JSON in them
 
     @property
     def pid(self):
@@ -127,14 +129,14 @@ class Process:
         return self.process.poll() is None
 
     def wait(self, timeout_s):
-        """@return the exit status, or None where it still runs"""
+        """@return the exit status, or None if it still runs"""
         try:
             return self.process.wait(PATIENCE * timeout_s)
         except subprocess.TimeoutExpired:
             return None
 
     def stop(self, number=signal.SIGINT, timeout_s=10.0):
-        """Signals it, and kills it where that does not help. @return status and seconds taken"""
+        """Signals it, and kills it if that does not help. @return status and seconds taken"""
         begin = time.monotonic()
         if self.alive():
             self.process.send_signal(number)
@@ -151,9 +153,14 @@ class Process:
 
     def lines(self):
         """Whole lines of JSON that came so far."""
-        text = self.out()
-        whole = text[:text.rfind("\n") + 1]
-        return [json.loads(line) for line in whole.splitlines() if line.startswith("{")]
+        with open(self.out_path, "rb") as file:
+            file.seek(self._read)
+            text = file.read()
+        whole = text[:text.rfind(b"\n") + 1]
+        self._read += len(whole)
+        self._lines += [json.loads(line) for line in
+                        whole.decode(errors="replace").splitlines() if line.startswith("{")]
+        return list(self._lines)
 
 
 def until(condition, timeout_s, step_s=0.05):
@@ -302,7 +309,11 @@ def main():
     names = sys.argv[1:]
     tests = (loader.loadTestsFromNames(names, module) if names else
              loader.loadTestsFromModule(module))
+    begin = time.monotonic()
     result = unittest.TextTestRunner(resultclass=Report, verbosity=2).run(tests)
+    used = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
+    note(f"{sum(u.ru_utime + u.ru_stime for u in used):.0f} s of processor time in "
+         f"{time.monotonic() - begin:.0f} s")
     report = os.environ.get("GOSHAWK_REPORT")
     if report:
         pathlib.Path(report).parent.mkdir(parents=True, exist_ok=True)

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """A member of the domain that speaks as a stage, in flight: every row of docs/security.md."""
 
+import itertools
 import json
 import signal
 
@@ -24,6 +25,7 @@ LIES = {
     "command at 500 Hz": (["--rate", 500], "simulator"),
     "command at 5,000 Hz": (["--rate", 5000], "simulator"),
 }
+MOST_LEGS = 6  # with one lie
 
 
 class HostileParticipant(StackTest):
@@ -40,8 +42,17 @@ class HostileParticipant(StackTest):
         return [r for r in self.stack.reports.lines()[since:]
                 if r["code"] == "second_writer" and node_of(r) == stage]
 
+    def fly_until_refused(self, stage, since, legs):
+        """Some lies answer a request, so that one that is told too late needs another leg."""
+        for _ in range(MOST_LEGS):
+            self.fly([next(legs)])
+            if until(lambda: self.refused_by(stage, since), 2.0):
+                return
+        self.fail(f"{stage} does not name the liar\n{self.stack.launch.tails()}")
+
     def test_1_lies_are_refused_and_every_goal_is_reached(self):
         pids = self.stack.launch.pids()
+        legs = itertools.cycle(PLACES)
         for name, (options, stage) in LIES.items():
             with self.subTest(name):
                 since = len(self.stack.reports.lines())
@@ -49,9 +60,7 @@ class HostileParticipant(StackTest):
                 impostor = self.sandbox.start(PREFIX / "bin" / "goshawk_impostor", name.split()[0],
                                               "--to", to, *options)
                 self.assertTrue(until(lambda i=impostor: i.lines(), 10.0), str(impostor.outcome()))
-                self.fly()
-                self.assertTrue(until(lambda: self.refused_by(stage, since), 10.0),
-                                self.stack.launch.tails())
+                self.fly_until_refused(stage, since, legs)
                 self.assertEqual(impostor.stop(signal.SIGTERM)[0], 0, str(impostor.outcome()))
                 note(f"{name}: {impostor.lines()[-1]['sent']} messages")
                 self.assertGreater(impostor.lines()[-1]["sent"], 0)

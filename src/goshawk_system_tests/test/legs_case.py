@@ -22,7 +22,8 @@ class LegsCase(StackTest):
         self.assertIsNotNone(state, "no answer to a goal\n" + self.stack.launch.tails())
         self.assertEqual(state["state"], "flying", state)
         moving = until(lambda: math.dist(self.stack.place(), here) > 0.5, 10.0)
-        self.assertTrue(moving, "the vehicle does not move")
+        self.assertTrue(moving, f"the vehicle does not move: navigator {self.said(since)}\n"
+                        + self.stack.launch.tails())
         return goal, since
 
     def said(self, since):

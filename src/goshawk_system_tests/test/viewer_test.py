@@ -18,7 +18,7 @@ SCRIPTS = SOURCE / "src/goshawk_viewer/test"
 
 
 def browser_environment(test):
-    """What node needs to drive a browser; where a part is absent the test is skipped."""
+    """What node needs to drive a browser; if a part is absent the test is skipped."""
     modules = pathlib.Path(os.environ.get("GOSHAWK_NODE_MODULES") or
                            SOURCE / "build/node/node_modules")
     chromium = os.environ.get("GOSHAWK_CHROMIUM") or shutil.which("chromium")

@@ -130,7 +130,8 @@ class TrackerComponent : public Component {
   void on_commit(const msg::CommittedTrajectory& m, const MessageInfo& info) {
     const Timing timing{.wire_ns = wire_time_ns(m.header(), info)};
     const std::int64_t now_ns = node_.monotonic_ns(), wall_ns = node_.now_ns();
-    const std::int64_t skew_ns = navigator_clock_.skew_ns(wall_ns, now_ns);
+    const std::int64_t skew_ns =
+        navigator_clock_.skew_ns(wall_ns, now_ns, conversions::to_ns(m.header().stamp()));
     if (const Status clocks = SenderClock::check(skew_ns, "the navigator"); !clocks) {
       return reporter_.failed(m.nominal().request().id(), clocks.error(), timing);
     }

@@ -24,14 +24,14 @@ void Tracker::check_flight(std::int64_t now_ns) {
   std::optional<std::int64_t> until_ns;
   for (std::size_t i = queue_.size(); i-- > 0;) {
     const std::int64_t from_ns = std::max(now_ns, queue_[i].start_ns());
-    if (const auto found = queue_[i].find_obstruction(grid, from_ns, until_ns)) {
+    if (const auto found = queue_[i].find_obstruction(map_.space(), from_ns, until_ns)) {
       drop_queued(i, fail(ErrorCode::trajectory_blocked, to_text(grid, *found)), newest);
       until_ns.reset();
     } else {
       until_ns = queue_[i].start_ns();
     }
   }
-  if (const auto found = reference_.find_obstruction(grid, now_ns, until_ns)) {
+  if (const auto found = reference_.find_obstruction(map_.space(), now_ns, until_ns)) {
     stop_before(*found, newest, now_ns);
   }
 }
@@ -68,7 +68,7 @@ bool Tracker::stop_on_free_way(std::int64_t now_ns) {
     if (!reference_.follows()) break;
     Reference braked = reference_;
     braked.brake(now_ns, deceleration);
-    const auto found = braked.find_obstruction(*map_.grid(), now_ns);
+    const auto found = braked.find_obstruction(map_.space(), now_ns);
     if (!found) {
       reference_ = std::move(braked);
       return true;

@@ -93,14 +93,14 @@ double Reference::seconds_until(double path_time_s, std::int64_t from_ns) const 
   return seconds(from_ns, brake_->begin_ns) + brake_->duration_s * low;
 }
 
-std::optional<Obstruction> Reference::find_obstruction(const VoxelGrid& grid, std::int64_t from_ns,
+std::optional<Obstruction> Reference::find_obstruction(const FreeSpace& space, std::int64_t from_ns,
                                                        std::optional<std::int64_t> to_ns) const {
   if (rests_always() || at_rest(from_ns)) return {};
   const double end_s = brake_ ? brake_->path_time_s + brake_->duration_s / 2.0 : path_duration_s();
   const double from_s = path_time(from_ns).s;
   const double to_s = to_ns ? std::min(end_s, path_time(*to_ns).s) : end_s;
-  auto found = curve_ ? goshawk::find_obstruction(grid, *curve_, from_s, to_s)
-                      : goshawk::find_obstruction(grid, committed_->flown(), from_s, to_s);
+  auto found = curve_ ? goshawk::find_obstruction(space, *curve_, from_s, to_s)
+                      : goshawk::find_obstruction(space, committed_->flown(), from_s, to_s);
   if (found) found->time_s = std::max(0.0, seconds_until(found->time_s, from_ns));
   return found;
 }

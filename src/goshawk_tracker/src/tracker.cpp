@@ -47,7 +47,10 @@ Result<Tracker> Tracker::create(const Config& config) {
 }
 
 Tracker::Tracker(const Config& config)
-    : config_(config), controller_(config), guard_(config.landing, config.land_height_m), map_(config.require_map) {}
+    : config_(config),
+      controller_(config),
+      guard_(config.landing, config.land_height_m),
+      map_(config.require_map, config.fly_unknown) {}
 
 Status Tracker::reconfigure(const Config& config) {
   if (auto status = check(config); !status) return status;

@@ -18,8 +18,7 @@ std::int64_t in_ns(double s) {
 /// from wall_m to wall_m + 0.2 in x, if that is given.
 std::shared_ptr<const VoxelGrid> hall(std::uint64_t version, std::optional<double> wall_m = {}) {
   auto grid = std::make_shared<VoxelGrid>();
-  grid->geometry = {
-      .origin_map = {-10.0, -10.0, 0.0}, .resolution_m = 0.2, .size = {100, 100, 30}};
+  grid->geometry = {.origin_map = {-10.0, -10.0, 0.0}, .resolution_m = 0.2, .size = {100, 100, 30}};
   grid->grown = BitGrid(grid->geometry.size, true);
   grid->version = version;
   if (!wall_m) return grid;
@@ -42,9 +41,8 @@ CommittedTrajectory eight_metres(std::uint64_t id = 1, std::uint64_t map_version
   const Draft draft = straight_line({0, 0, 1}, {8, 0, 1}, 7.5);
   auto certified =
       certify(draft.trajectory, draft.polytopes, draft.limits, draft.start, draft.goal);
-  return CommittedTrajectory::make({.id = id,
-                                    .nominal = std::move(certified).value(),
-                                    .map_version = map_version})
+  return CommittedTrajectory::make(
+             {.id = id, .nominal = std::move(certified).value(), .map_version = map_version})
       .value();
 }
 
@@ -102,6 +100,45 @@ TEST(MapInFlight, AForgedTrajectoryThroughAnObstacleIsRefusedWithPlaceAndVersion
   EXPECT_EQ(refused.code(), ErrorCode::trajectory_blocked);
   EXPECT_THAT(refused.error().message, HasSubstr("map 5 has an obstacle at (4.1"));
   EXPECT_EQ(flown.tracker.status().queued, 0);
+}
+
+/// The hall, seen up to there; the map leaves the rest free for planning.
+std::shared_ptr<const VoxelGrid> seen_hall(std::uint64_t version, double seen_m) {
+  auto grid = std::make_shared<VoxelGrid>(*hall(version));
+  grid->known = BitGrid(grid->geometry.size, false);
+  for (int z = 0; z < 30; ++z) {
+    for (int y = 0; y < 100; ++y) {
+      grid->known.set_run(0, int(std::lround((seen_m + 10.0) / 0.2)), y, z, true);
+    }
+  }
+  grid->unknown_is_occupied = false;
+  grid->inflation_m = 0.2;
+  return grid;
+}
+
+TEST(MapInFlight, SpaceThatWasNeverSeenIsNotFlownThrough) {
+  Flown flown;
+  flown.tracker.set_map(seen_hall(5, 8.0), 0);
+  const auto refused = flown.tracker.accept(eight_metres(), 0);
+  EXPECT_EQ(refused.code(), ErrorCode::trajectory_blocked);
+  EXPECT_THAT(refused.error().message, HasSubstr("map 5 has space that was never seen within"));
+  flown.tracker.set_map(seen_hall(6, 8.6), 0);
+  EXPECT_TRUE(flown.tracker.accept(eight_metres(), 0)) << "the whole body was seen free";
+  // And if it is forgotten on the way, the vehicle brakes before it.
+  flown.until(3.74);
+  flown.tracker.set_map(seen_hall(7, 7.0), flown.now_ns());
+  EXPECT_EQ(flown.tracker.status().fault.code, ErrorCode::trajectory_blocked);
+  flown.until(8.0);
+  EXPECT_LT(flown.farthest_x_m, 6.8 + 1e-9);
+  EXPECT_EQ(flown.tracker.status().mode, Mode::hold);
+}
+
+TEST(MapInFlight, SpaceThatWasNeverSeenIsFlownThroughIfThatIsWished) {
+  Config config;
+  config.fly_unknown = true;
+  Flown flown(config);
+  flown.tracker.set_map(seen_hall(5, 2.0), 0);
+  EXPECT_TRUE(flown.tracker.accept(eight_metres(), 0));
 }
 
 TEST(MapInFlight, WhatLiesBehindTheVehicleIsNoConflict) {

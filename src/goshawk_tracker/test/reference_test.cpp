@@ -95,8 +95,10 @@ TEST(Reference, DerivativesAreThoseOfThePosition) {
 // What is in the way counts only as far as the reference gets, and when it gets there.
 TEST(Reference, TellsWhenItMeetsAnObstacleBrakingOrNot) {
   VoxelGrid grid;
-  grid.geometry = {.origin_map = Vec3::Constant(-20.0), .resolution_m = 0.1, .size = {400, 400, 400}};
+  grid.geometry = {
+      .origin_map = Vec3::Constant(-20.0), .resolution_m = 0.1, .size = {400, 400, 400}};
   grid.grown = BitGrid(grid.geometry.size, true);
+  const FreeSpace empty(std::make_shared<const VoxelGrid>(grid));
   for (const double begin : {0.5, 1.5, 3.0}) {
     for (const bool brakes : {false, true}) {
       auto reference = make(0);
@@ -104,19 +106,20 @@ TEST(Reference, TellsWhenItMeetsAnObstacleBrakingOrNot) {
       for (const double ahead : {0.1, 0.4, 0.7, 30.0}) {
         const Vec3 place = reference.at(nanoseconds(begin + ahead)).position;
         const Index3 voxel = grid.geometry.index_of(place).value();
-        VoxelGrid blocked = grid;
-        blocked.grown.set(voxel, true);
+        auto map = std::make_shared<VoxelGrid>(grid);
+        map->grown.set(voxel, true);
+        const FreeSpace blocked(map);
         const auto found = reference.find_obstruction(blocked, nanoseconds(begin));
         ASSERT_TRUE(found);
         EXPECT_EQ(found->voxel, voxel);
         EXPECT_LE(found->time_s, ahead);
         const auto enters =
-            reference.at(nanoseconds(begin + found->time_s)).position - blocked.geometry.center(voxel);
+            reference.at(nanoseconds(begin + found->time_s)).position - grid.geometry.center(voxel);
         EXPECT_LT(enters.cwiseAbs().maxCoeff(), 0.05 + 0.03) << "at the voxel's face";
         EXPECT_FALSE(reference.find_obstruction(
             blocked, nanoseconds(begin), nanoseconds(begin + std::max(0.0, found->time_s - 0.01))));
       }
-      EXPECT_FALSE(reference.find_obstruction(grid, nanoseconds(begin)));
+      EXPECT_FALSE(reference.find_obstruction(empty, nanoseconds(begin)));
     }
   }
 }

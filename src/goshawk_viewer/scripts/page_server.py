@@ -1,4 +1,4 @@
-"""Serves a few files to browsers on this machine, in parts where they ask for parts (RFC 9110,
+"""Serves a few files to browsers on this machine, in parts if they ask for parts (RFC 9110,
 ranges): a viewer of recordings asks for the end of a file first, then for what it shows."""
 
 import http.server

@@ -95,6 +95,12 @@ std::vector<std::string> launch_arguments(const FlyOptions& o, const Preparation
   set("map_server:map_file", p.config.needs_world()
                                  ? folder + "/world.bt"
                                  : std::filesystem::absolute(p.config.map.map_file).string());
+  if (p.config.map.unknown == map_server::UnknownPolicy::free) {
+    // Asked for, of a map that does not change: what was not measured is flown through.
+    for (const char* node : {"navigator", "tracker"}) {
+      set(fmt::format("{}:fly_unknown", node), "true");
+    }
+  }
   for (int axis = 0; axis < 3; ++axis) {
     set(fmt::format("simulator:start_{}_m", "xyz"[axis]),
         fmt::format("{:.17g}", p.tour.start_map[axis]));

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "goshawk/core/committed_trajectory.hpp"
-#include "goshawk/core/grid_geometry.hpp"
+#include "goshawk/core/free_space.hpp"
 
 namespace goshawk {
 
@@ -17,18 +17,26 @@ struct Obstruction {
 
 /// Proves that a curve keeps out of a grid's blocked voxels, at all times and not only at samples:
 /// the boxes around the control points of ever shorter parts of it (de Casteljau, hull property)
-/// meet no blocked voxel. Faces may be touched, as a corridor's planes touch them: a voxel is in the
-/// way if the curve enters it deeper than kTouch_m. Between two blocked voxels there is no way.
+/// meet no blocked voxel. Faces may be touched, as a corridor's planes touch them: a voxel is in
+/// the way if the curve enters it deeper than kTouch_m. Between two blocked voxels there is no way.
 /// Exact up to that depth: what is reported is entered, or cannot be told from it. Allocates
 /// nothing.
 ///
 /// @param from_s, to_s [s] the part that is looked at, cut to the curve
 /// @return the first obstruction, or nothing: then that part is free
-std::optional<Obstruction> find_obstruction(
-    const VoxelGrid& grid, const BezierPiece& curve, double from_s = 0.0,
-    double to_s = std::numeric_limits<double>::infinity());
+std::optional<Obstruction> find_obstruction(const VoxelGrid& grid, const BezierPiece& curve,
+                                            double from_s = 0.0,
+                                            double to_s = std::numeric_limits<double>::infinity());
 std::optional<Obstruction> find_obstruction(const VoxelGrid& grid, const Trajectory& trajectory,
                                             double from_s, double to_s);
+/// The same for what the vehicle may fly through, which is not free where it was never seen.
+/// @pre a map has come
+std::optional<Obstruction> find_obstruction(const FreeSpace& space, const BezierPiece& curve,
+                                            double from_s = 0.0,
+                                            double to_s = std::numeric_limits<double>::infinity());
+std::optional<Obstruction> find_obstruction(const FreeSpace& space, const Trajectory& trajectory,
+                                            double from_s = 0.0,
+                                            double to_s = std::numeric_limits<double>::infinity());
 
 inline constexpr double kTouch_m = 1e-5;
 
@@ -39,5 +47,7 @@ std::string to_text(const VoxelGrid& grid, const Obstruction& found);
 /// @param from_s [s] since its start
 /// @return trajectory_blocked, with time, place and map version
 Status check_against(const VoxelGrid& grid, const CommittedTrajectory& committed, double from_s);
+/// @pre a map has come
+Status check_against(const FreeSpace& space, const CommittedTrajectory& committed, double from_s);
 
 }  // namespace goshawk

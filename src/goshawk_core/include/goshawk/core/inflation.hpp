@@ -4,7 +4,7 @@
 
 namespace goshawk {
 
-/// Grows obstacles, conservatively and exactly (corrections.md, Inflation): a voxel of the result
+/// Grows obstacles, conservatively and exactly (docs/method.md): a voxel of the result
 /// is set when the distance between its cube and the cube of a set voxel is less than the radius.
 /// Cubes that touch have distance 0, so any radius > 0 sets all 26 neighbours. What lies outside
 /// the grid does not grow into it.

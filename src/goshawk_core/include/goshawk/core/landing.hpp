@@ -23,7 +23,7 @@ Status check_way_down(const VoxelGrid& grid, const Vec3& from_map, double land_h
 
 /// When a vehicle that lost its pilot may land.
 enum class LandingRule {
-  map,       // where the newest map shows the way down free
+  map,       // if the newest map shows the way down free
   anywhere,  // everywhere: the ground is known to be free, no map is asked
   never,
 };
@@ -49,7 +49,7 @@ class LandingGuard {
   /// Without a map it cannot decide.
   bool needs_map() const { return rule_ == LandingRule::map && grid_ == nullptr; }
 
-  /// @return all of check_way_down(); no_map where none has come; cancelled where it never lands
+  /// @return all of check_way_down(); no_map if none has come; cancelled if it never lands
   Status check(const Vec3& from_map) const;
 
  private:

@@ -31,7 +31,7 @@ struct BezierPiece {
   double duration_s = 0.0;                         // [s] > 0
   int polytope = 0;                                // index of the polytope it stays in
 
-  /// Control points of the derivatives (thesis, Bezier Curve Representation; corrections.md).
+  /// Control points of the derivatives (thesis, Bezier Curve Representation, corrected: docs/method.md).
   Points3<5> velocity_points() const;      // [m/s]
   Points3<4> acceleration_points() const;  // [m/s^2]
   Points3<3> jerk_points() const;          // [m/s^3]

@@ -27,6 +27,7 @@ struct Config {
   double settle_timeout_s = 5.0;
   double odometry_timeout_s = 0.5;
   bool require_map = true;
+  bool fly_unknown = false;
   double map_wait_s = 0.5;
   double map_retry_s = 5.0;
   std::string memory_file;
@@ -85,6 +86,11 @@ void describe_map(Self& c, Visitor& visit) {
   visit("require_map", c.require_map, "",
         "only what the map shows free is committed; false: before any map came, trajectories are "
         "committed unchecked",
+        Anything{});
+  visit("fly_unknown", c.fly_unknown, "",
+        "if the map leaves unknown space free, it is flown through as if it were free; false: what "
+        "leads through it gets a stop part that is flown only through space in which the whole "
+        "body was seen to be free",
         Anything{});
   visit("map_wait_s", c.map_wait_s, "s",
         "how long a trajectory waits for the map version that it names, before it is refused",

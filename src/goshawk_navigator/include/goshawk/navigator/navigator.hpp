@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include "goshawk/core/grid_geometry.hpp"
+#include "goshawk/core/free_space.hpp"
 #include "goshawk/core/plan_request.hpp"
 #include "goshawk/core/stage_role.hpp"
 #include "goshawk/core/vehicle.hpp"
@@ -37,7 +37,8 @@ struct StateOrder {
 /// A trajectory to fly.
 struct Commit {
   CommittedTrajectory trajectory;
-  std::uint64_t answer = 0;  // number of the answer that it is; 0: the navigator's own, to brake
+  std::uint64_t answer = 0;     // number of the answer that it is; 0: the navigator's own
+  std::uint64_t continues = 0;  // the commit whose nominal part it has, with a later stop; 0: none
 };
 /// An answer that is not flown. The request goes on.
 struct Complaint {
@@ -52,7 +53,7 @@ struct Memory {
   State state = State::idle;
   std::uint64_t newest_id = 0;
   Goal goal;
-  bool open = false;      // no committed trajectory leads to the goal yet
+  bool open = false;  // no committed trajectory leads to the goal yet
   Error reason = {ErrorCode::ok, ""};
   std::vector<Leg> legs = {};  // by start
 };
@@ -67,6 +68,12 @@ struct Memory {
 /// no start can help, and what is flown always ends at rest. Answers are checked against the
 /// request and the map; a bad one is refused, and a good one is waited for. A request without an
 /// answer is asked again, then given up with the name of the stage that was silent.
+///
+/// In a map that leaves unknown space free for planning, what is committed gets a stop part that
+/// begins as late as known free space allows. While one is flown, each map moves the stop as far
+/// back as what was seen by then allows, and better plans are asked for: one replaces what is flown
+/// only if it is better by a margin. If nothing newer comes, the stop part is flown, and the goal
+/// is planned for again from rest.
 class Navigator {
  public:
   /// @param first_id number of the first request, above 0: unique over restarts
@@ -76,8 +83,8 @@ class Navigator {
   /// @return invalid_parameter: out of range, or what cannot change at run time; then as before
   Status reconfigure(const Config& config);
 
-  /// Goes on where another navigator ended, before any other event: what is not yet flown to its end
-  /// is committed again, for a tracker that has not had it.
+  /// Goes on where another navigator ended, before any other event: what is not yet flown to its
+  /// end is committed again, for a tracker that has not had it.
   void resume(Memory memory, std::int64_t now_ns);
   Memory memory() const;
 
@@ -118,6 +125,7 @@ class Navigator {
     int refused = 0;  // answers
     std::string why_refused = {};
     std::optional<Failure> failure = {};
+    bool improves = false;  // what is flown leads to the goal already
 
     bool from_motion() const { return request.start.velocity.norm() > 1e-3; }
     std::optional<std::int64_t> too_late_ns() const;
@@ -140,8 +148,8 @@ class Navigator {
     std::int64_t not_before_ns = 0;  // the next start
     std::int64_t retry_ns = 0;
     std::int64_t wait_begin_ns = 0;  // since when a plan waits for the vehicle to come to rest
-    std::optional<std::int64_t> revoked_ns = {};    // since when another goal is flown to
-    std::optional<MapRetry> map_retry = {};         // it failed because of the map
+    std::optional<std::int64_t> revoked_ns = {};  // since when another goal is flown to
+    std::optional<MapRetry> map_retry = {};       // it failed because of the map
   };
   struct Tracked {
     std::uint64_t id;
@@ -162,11 +170,14 @@ class Navigator {
   // planning.cpp
   void plan(std::int64_t now_ns);
   Start start_in_flight(std::int64_t now_ns) const;
+  Start start_at(std::int64_t time_ns) const;
   Start start_at_rest(std::int64_t now_ns) const;
   void ask(const Start& start, std::int64_t now_ns);
+  void open(const Start& start, std::uint64_t id, std::int64_t now_ns);
   void drop_open();
   void check_open(std::int64_t now_ns);
   void act_on(const Error& reason, std::int64_t now_ns);
+  void wait_for_other_map(std::int64_t asked_ns, std::int64_t now_ns);
   void try_other_start(const Error& reason, std::int64_t now_ns);
   void plan_again(const Error& reason, double delay_s, std::int64_t now_ns);
   void give_up(const Error& reason, std::int64_t now_ns);
@@ -185,9 +196,19 @@ class Navigator {
   void blocked(const Error& why, std::int64_t now_ns);
   void pursue_again(const Error& why, std::int64_t now_ns);
   void take_up_again(std::uint64_t followed_id, std::int64_t now_ns);
+  // replanning.cpp
+  bool approaches() const;
+  Status add_stop(Commitment& candidate, bool from_rest) const;
+  void move_stop(std::int64_t now_ns);
+  void improve(std::int64_t now_ns);
+  double improvement_lead_s() const;
+  void take_improvement(Commitment candidate, std::uint64_t number, std::int64_t now_ns);
+  bool is_better(const CommittedTrajectory& other, std::int64_t now_ns) const;
+  void rest_before_goal(std::int64_t now_ns);
   // navigator.cpp
   void check_arrival(std::int64_t now_ns);
   bool at_rest() const;
+  const VoxelGrid* map() const { return space_.grid(); }
   bool odometry_is_fresh(std::int64_t now_ns) const;
   std::uint64_t flown_id(std::int64_t now_ns) const;
   void say_what_is_flown(std::int64_t now_ns);
@@ -202,7 +223,9 @@ class Navigator {
   std::optional<Pending> pending_;
   std::uint64_t dropped_id_ = 0;  // a request that nobody needs an answer to any more
   Schedule schedule_;
-  std::shared_ptr<const VoxelGrid> map_;
+  FreeSpace space_;
+  std::int64_t improve_ns_ = 0;  // then the next improvement is asked for
+  double latency_s_ = 0.0;       // from request to answer, of late
   std::optional<std::int64_t> map_changed_ns_;
   std::optional<Tracked> tracked_;
   std::optional<Left> left_;

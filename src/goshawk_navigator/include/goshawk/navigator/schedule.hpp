@@ -12,10 +12,15 @@ struct Leg {
   CommittedTrajectory committed;
   bool brakes = false;    // it leads to rest, and to no goal
   bool accepted = false;  // by the tracker
+  /// The leg before it has the same nominal part, and an earlier stop: until the tracker has taken
+  /// this one, that one is flown.
+  bool continues = false;
 
   std::uint64_t id() const { return committed.id(); }
   std::int64_t start_ns() const { return committed.start_time_ns(); }
   std::int64_t end_ns() const;
+  /// Does it come to rest, on its stop part, farther than so from where its nominal part ends?
+  bool stops_early(double tolerance_m) const;
   /// At its end after it, at its start before it. @param time_ns as start_ns()
   FlatState at(std::int64_t time_ns) const;
 };
@@ -24,14 +29,16 @@ struct Leg {
 /// knows it. A leg ends when the next one begins.
 class Schedule {
  public:
-  /// Those that begin then or later are replaced, as in the tracker.
+  /// Those that begin then or later are replaced, as in the tracker; the one that it continues is
+  /// kept until the tracker has taken it.
   void add(Leg leg);
-  /// The tracker did not take it: neither it nor what follows on it is flown, nor what it follows on
-  /// if that was never answered: the tracker answers in order, so it has not heard that.
+  /// The tracker did not take it: neither it nor what follows on it is flown, nor what it follows
+  /// on if that was never answered: the tracker answers in order, so it has not heard that.
   void drop_refused(std::uint64_t id);
   /// Nothing of it is flown any more.
   void clear() { legs_.clear(); }
-  /// Forgets legs that another has replaced by now.
+  /// Forgets legs that another has replaced by now. What continues a leg replaces it once it is
+  /// accepted.
   void forget_before(std::int64_t now_ns);
 
   /// @return what is flown, or held at its end, then; nullptr before the first leg

@@ -16,7 +16,7 @@ enum class Planner {
   prm,
 };
 
-/// When may a path move diagonally past blocked voxels? (corrections.md, Corner cutting)
+/// When may a path move diagonally past blocked voxels? (docs/method.md)
 enum class CornerRule {
   no_squeeze,  // every voxel of the box that the move spans is free
   squeeze,     // the target voxel is free

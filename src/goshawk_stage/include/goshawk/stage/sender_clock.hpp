@@ -21,8 +21,9 @@ class SenderClock {
   void hear(std::int64_t stamp_ns, std::int64_t now_ns);
 
   /// @param wall_ns, now_ns [ns] own wall clock and own monotonic clock, at the same moment
+  /// @param sent_ns [ns] stamp of the message that came now and is to be dated
   /// @return [ns] sender's wall clock minus own one; 0 if they agree, or before the first message
-  std::int64_t skew_ns(std::int64_t wall_ns, std::int64_t now_ns) const;
+  std::int64_t skew_ns(std::int64_t wall_ns, std::int64_t now_ns, std::int64_t sent_ns) const;
 
   /// @return clock_set if the skew is larger than what is compensated; names the sender
   static Status check(std::int64_t skew_ns, const char* sender);

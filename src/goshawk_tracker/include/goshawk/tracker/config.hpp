@@ -50,6 +50,7 @@ struct Config {
   double start_tolerance_m = 0.05;
   double start_velocity_tolerance_m_s = 0.2;
   bool require_map = true;
+  bool fly_unknown = false;
   double map_wait_s = 0.5;
   SecondOpinion second_opinion = SecondOpinion::heed;
   double second_opinion_wait_s = 0.5;
@@ -123,6 +124,10 @@ void describe_safety(Self& c, Visitor& visit) {
   visit("require_map", c.require_map, "",
         "only what the map shows free is flown; false: without any map, trajectories are flown "
         "unchecked",
+        Anything{});
+  visit("fly_unknown", c.fly_unknown, "",
+        "if the map leaves unknown space free, it is flown through as if it were free; false: only "
+        "space in which the whole body was seen to be free",
         Anything{});
   visit("map_wait_s", c.map_wait_s, "s",
         "how long a trajectory waits for the map version that it names, before it is refused",

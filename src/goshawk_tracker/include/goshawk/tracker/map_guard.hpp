@@ -11,12 +11,15 @@ namespace goshawk::tracker {
 class MapGuard {
  public:
   /// @param required without any map nothing may be flown
-  explicit MapGuard(bool required) : required_(required) {}
+  /// @param fly_unknown as FreeSpace
+  MapGuard(bool required, bool fly_unknown) : required_(required), space_(fly_unknown) {}
 
   /// @pre grid->check() ok
-  void set_map(std::shared_ptr<const VoxelGrid> grid) { grid_ = std::move(grid); }
+  void set_map(std::shared_ptr<const VoxelGrid> grid) { space_.set_map(std::move(grid)); }
   /// nullptr before the first.
-  const VoxelGrid* grid() const { return grid_.get(); }
+  const VoxelGrid* grid() const { return space_.grid(); }
+  /// What the newest map lets the vehicle fly through.
+  const FreeSpace& space() const { return space_; }
 
   /// May it be flown from from_s on, [s] since its start? A newer map than the one that it was
   /// planned in decides alone.
@@ -30,7 +33,7 @@ class MapGuard {
 
  private:
   bool required_;
-  std::shared_ptr<const VoxelGrid> grid_;
+  FreeSpace space_;
 };
 
 }  // namespace goshawk::tracker

@@ -39,7 +39,7 @@ class Reference {
 
   /// Is what is left of it free, until it comes to rest, or until to_ns? A held point is.
   /// @return the first obstruction; its time counts from from_ns on
-  std::optional<Obstruction> find_obstruction(const VoxelGrid& grid, std::int64_t from_ns,
+  std::optional<Obstruction> find_obstruction(const FreeSpace& space, std::int64_t from_ns,
                                               std::optional<std::int64_t> to_ns = {}) const;
 
   /// @pre has_trajectory()

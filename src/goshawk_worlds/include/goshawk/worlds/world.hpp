@@ -11,7 +11,7 @@ namespace goshawk::worlds {
 
 /// A made-up world, told by a few numbers. The same spec gives the same bytes on every machine.
 ///
-/// What `density` means depends on the kind (corrections.md, Obstacle ratio):
+/// What `density` means depends on the kind (docs/method.md):
 ///   noise   every voxel is occupied with this probability, independently of all others
 ///   boxes   boxes and floor-to-ceiling pillars are added until this share of the grown map is
 ///           blocked, within kDensityTolerance
@@ -45,7 +45,7 @@ const std::vector<std::string>& world_kinds();
 
 /// The world of the thesis' trajectory tables: 6 x 8 x 4 m of boxes and pillars at 0.2 m, 0.4 of
 /// the grown map blocked, (3, 0, 1) and (3, 8, 2) free. Both points lie on a face of that box, so
-/// it is padded by two voxels in y on both sides (corrections.md, Start and goal).
+/// it is padded by two voxels in y on both sides (docs/method.md).
 WorldSpec default_world();
 
 /// @return invalid_parameter for a spec that says nothing sensible, or a density that this kind
