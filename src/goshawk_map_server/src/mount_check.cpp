@@ -9,7 +9,7 @@
 namespace goshawk::map_server {
 namespace {
 
-constexpr std::size_t kMostClouds = 40, kMostPoints = 2000;  // of a cloud
+constexpr std::size_t kMostClouds = 30, kMostPoints = 800;  // of a cloud
 constexpr double kLeastTurn_rad = 0.5;
 constexpr double kFirstStep_rad = 0.04, kLastStep_rad = 0.0025;
 constexpr double kSuspicious_rad = 0.01, kSuspiciousShare = 0.03;
@@ -51,22 +51,30 @@ double turned_rad(const std::vector<PlacedPart>& parts) {
   return most;
 }
 
+std::uint64_t key_of(const Eigen::Array3d& voxels) {
+  std::uint64_t key = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    key = key << 21 | (std::uint64_t(std::int64_t(std::floor(voxels[axis]))) & 0x1FFFFF);
+  }
+  return key;
+}
+
+// Of two rasters, half a voxel apart: in one alone, a wall on the faces of voxels fills two layers.
 std::size_t voxels_filled(const std::vector<PlacedPart>& parts, const Pose& to_base,
                           const Vec3& correction_rad, double resolution_m) {
   const Quaternion turn = turn_of(correction_rad);
-  std::unordered_set<std::uint64_t> voxels;
+  std::unordered_set<std::uint64_t> whole, half;
+  whole.reserve(parts.size() * kMostPoints);
+  half.reserve(parts.size() * kMostPoints);
   for (const PlacedPart& part : parts) {
     const Pose sensor = part.base * Pose{to_base.position, to_base.q * turn};
     for (const Vec3& p : part.points) {
-      const Eigen::Array3d at = ((sensor * p) / resolution_m).array().floor();
-      std::uint64_t key = 0;
-      for (int axis = 0; axis < 3; ++axis) {
-        key = key << 21 | (std::uint64_t(std::int64_t(at[axis])) & 0x1FFFFF);
-      }
-      voxels.insert(key);
+      const Eigen::Array3d at = ((sensor * p) / resolution_m).array();
+      whole.insert(key_of(at));
+      half.insert(key_of(at + 0.5));
     }
   }
-  return voxels.size();
+  return whole.size() + half.size();
 }
 
 }  // namespace

@@ -61,7 +61,7 @@ class BigWorld : public ::testing::Test {
     std::int64_t most = 0;
     const double step = begin_m < end_m ? 1.0 : -1.0;
     for (double x = begin_m; step * (end_m - x) >= 0.0; x += step) {
-      const Vec3 from = Vec3(x, 0.5 * kPillars_m, 5.1);
+      const Vec3 from(x + 0.07, 0.5 * kPillars_m + 0.03, 5.13);  // off the faces of voxels
       std::vector<Vec3> points = scan_from(from);
       for (Vec3& p : points) p += origin;
       const Vec3 at = from + origin;
@@ -121,7 +121,7 @@ TEST_F(BigWorld, FarFromTheOriginTheMapIsTheSame) {
     }
   }
   EXPECT_GT(known, 20000);
-  EXPECT_LT(double(different), 1e-3 * double(known));  // rounding of rays along faces
+  EXPECT_LT(double(different), 1e-3 * double(known));
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ constexpr double kHalfTurn_rad = std::numbers::pi;
 
 // [m] from inside a room of 12 x 10 x 4 m to its walls
 double to_wall(const Vec3& from, const Vec3& way) {
-  const Vec3 lower(-6, -5, -2), upper(6, 5, 2);
+  const Vec3 lower(-6.07, -5.03, -2.11), upper(6.04, 5.08, 2.05);
   double range = 1e9;
   for (int a = 0; a < 3; ++a) {
     if (way[a] != 0.0) {

@@ -2,6 +2,7 @@
 """A flight that begins without a map: a simulated lidar sees the true world, the map server maps
 what it sees, and the vehicle flies by that map. Judged by the true world, which no planner has."""
 
+import itertools
 import json
 import math
 
@@ -41,7 +42,7 @@ class LiveMap:
         return tuple(math.floor((p - o) / self.resolution) for p, o in zip(point, self.origin))
 
     def places_from(self, point):
-        """Centres of free voxels that steps over faces lead to, all of whose neighbours are free."""
+        """Centres of free voxels that steps over faces lead to, if all neighbours are free too."""
         def beside(voxel):
             return [tuple(v + s for v, s in zip(voxel, step)) for step in STEPS]
         start = self.voxel_of(point)
@@ -90,19 +91,24 @@ class LiveFlight(SystemTest):
         mapped = until(lambda: self.map().places_from(start), 60.0)
         self.assertTrue(mapped, f"nothing is mapped\n{self.stack.launch.tails()}")
         hops = []
-        while math.dist(self.stack.place(), start) < FAR_M and len(hops) < MOST_HOPS:
+        while len(hops) < MOST_HOPS:
             hops.append(self.hop(start))
+            arrived = any(told == "arrived" for told, _ in hops)
+            if arrived and math.dist(self.stack.place(), start) >= FAR_M:
+                break
         far = math.dist(self.stack.place(), start)
         clearance = second_opinion.smallest_clearance(self.stack.world, self.stack.track(), 0.02)
-        note(f"{far:.2f} m from the start after {hops}; the centre came to {clearance:.3f} m of the "
-             "true world")
+        note(f"{far:.2f} m from the start after {hops}; the centre came to {clearance:.3f} m of "
+             "the true world")
+        self.assertTrue(arrived, f"{hops}\n{self.stack.launch.tails()}")
         self.assertGreaterEqual(far, FAR_M, f"{hops}\n{self.stack.launch.tails()}")
         self.assertGreater(clearance, harness.BODY_RADIUS_M)
         self.assertGreater(self.map().known_voxels(), hops[0][1], "the world did not unfold")
         self.check_saved()
 
     def check_saved(self):
-        """What `goshawk map save` writes knows no free space that the true world fills."""
+        """What `goshawk map save` writes has obstacles only where the true world has them. Its
+        faces lie on those of voxels, so that noise puts a hit in front of them or behind."""
         file = self.sandbox.folder / "mapped.bt"
         outcome = self.sandbox.goshawk("map", "save", file, "--json", "--timeout", "20")
         saved = self.json_object(outcome)
@@ -111,7 +117,10 @@ class LiveFlight(SystemTest):
         found = second_opinion.OccupiedCubes(file).cubes
         true = second_opinion.OccupiedCubes(self.stack.world).cubes
         self.assertGreater(len(found & true), 100)
-        self.assertGreater(len(found & true), 0.5 * len(found))
+        around = list(itertools.product((-1, 0, 1), repeat=3))
+        wrong = [cube for cube in found
+                 if not any(tuple(c + d for c, d in zip(cube, by)) in true for by in around)]
+        self.assertLess(len(wrong), 0.05 * len(found))
 
 
 if __name__ == "__main__":
