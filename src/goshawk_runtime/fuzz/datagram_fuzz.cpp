@@ -1,11 +1,12 @@
-// Any bytes: the check of datagrams reads none past their end, and what it admits is made of
-// submessages that fill the datagram.
+// Any bytes: the check of datagrams reads none past their end, nor does what reads handshakes, and
+// what is admitted is made of submessages that fill the datagram.
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <memory>
 
 #include "../src/wire/datagram_check.hpp"
+#include "../src/wire/handshake_datagrams.hpp"
 
 namespace {
 
@@ -38,9 +39,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       std::make_unique<std::byte[]>(whole);  // exact: the sanitizer guards its end
   if (!raw) std::memcpy(datagram.get(), kGood, kHeader);
   if (size > 0) std::memcpy(datagram.get() + (raw ? 0 : kHeader), data, size);
-  if (goshawk::runtime::wire::admits({datagram.get(), whole}) &&
-      !submessages_fill(datagram.get(), whole)) {
-    std::abort();
-  }
+  namespace wire = goshawk::runtime::wire;
+  const wire::Bytes all(datagram.get(), whole);
+  if (!wire::admits(all)) return 0;
+  if (!submessages_fill(datagram.get(), whole)) std::abort();
+  const wire::SenderTable::Prefix own{};
+  const bool is_both = wire::is_greeting(all, own) && wire::handshake_message(all, own);
+  if (is_both) std::abort();
   return 0;
 }

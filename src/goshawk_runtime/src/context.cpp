@@ -17,6 +17,7 @@
 #include "any_type.hpp"
 #include "context_impl.hpp"
 #include "goshawk/runtime/version.hpp"
+#include "writer_guard.hpp"
 
 namespace goshawk::runtime {
 namespace {
@@ -105,11 +106,19 @@ void filter_transports(dds::TransportConfigQos& transports, const wire::FilterOp
   }
 }
 
-dds::DomainParticipantQos participant_qos(const ContextOptions& options,
-                                          const wire::FilterOptions& filter) {
+dds::DomainParticipantQos profile_qos() {
   auto* factory = dds::DomainParticipantFactory::get_instance();
   factory->load_profiles();
-  dds::DomainParticipantQos qos = factory->get_default_participant_qos();
+  return factory->get_default_participant_qos();
+}
+
+bool has_property(const dds::DomainParticipantQos& qos, const char* name) {
+  return rtps::PropertyPolicyHelper::find_property(qos.properties(), name) != nullptr;
+}
+
+dds::DomainParticipantQos participant_qos(dds::DomainParticipantQos qos,
+                                          const ContextOptions& options,
+                                          const wire::FilterOptions& filter) {
   if (std::getenv("FASTRTPS_DEFAULT_PROFILES_FILE") == nullptr) use_udp(qos, options.interfaces);
   filter_transports(qos.transport(), filter);
   auto& discovery = qos.wire_protocol().builtin.discovery_config;
@@ -163,11 +172,15 @@ Result<std::unique_ptr<Context>> Context::create(const ContextOptions& options) 
   if (auto status = check_interfaces(options.interfaces); !status) return status.error();
   auto impl = std::make_unique<Impl>();
   impl->domain = options.domain;
-  const wire::FilterOptions filter{impl->refusals, impl->senders, options.tap};
+  const auto profile = profile_qos();
+  impl->has_permissions = has_property(profile, "dds.sec.access.plugin");
+  if (has_property(profile, "dds.sec.auth.plugin")) {
+    impl->listener.handshakes = std::make_shared<wire::Handshakes>();
+  }
+  const wire::FilterOptions filter{impl->refusals, impl->senders, impl->listener.handshakes,
+                                   options.tap};
+  const auto qos = participant_qos(profile, options, filter);
   auto* factory = dds::DomainParticipantFactory::get_instance();
-  const auto qos = participant_qos(options, filter);
-  impl->has_permissions = rtps::PropertyPolicyHelper::find_property(
-                              qos.properties(), "dds.sec.access.plugin") != nullptr;
   impl->participant = factory->create_participant(dds::DomainId_t(options.domain), qos,
                                                   &impl->listener, dds::StatusMask::none());
   if (impl->participant == nullptr) {
@@ -176,6 +189,9 @@ Result<std::unique_ptr<Context>> Context::create(const ContextOptions& options) 
         fmt::format("cannot join domain {} on interfaces '{}': are its UDP ports (7400 + 250 "
                     "x domain and up) taken, is the interface up, is the profile file right?",
                     options.domain, options.interfaces));
+  }
+  if (const auto& handshakes = impl->listener.handshakes) {
+    handshakes->begin(participant_of(impl->participant->guid().guidPrefix));
   }
   impl->publisher = impl->participant->create_publisher(dds::PUBLISHER_QOS_DEFAULT);
   impl->subscriber = impl->participant->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT);

@@ -27,6 +27,8 @@ class DiscoveryListener : public dds::DomainParticipantListener {
                               rtps::WriterDiscoveryInfo&& info) override;
   void on_subscriber_discovery(dds::DomainParticipant* participant,
                                rtps::ReaderDiscoveryInfo&& info) override;
+  void onParticipantAuthentication(dds::DomainParticipant* participant,
+                                   rtps::ParticipantAuthenticationInfo&& info) override;
 
   std::vector<ParticipantInfo> participants() const;
   std::vector<EndpointInfo> endpoints() const;
@@ -38,7 +40,11 @@ class DiscoveryListener : public dds::DomainParticipantListener {
   /// @return whether it left without a word, which a stopped process does, at most within_s ago
   bool fell_silent(const Participant& participant, double within_s) const;
 
+  std::shared_ptr<wire::Handshakes> handshakes{};  // null without DDS Security
+
  private:
+  void tell_handshakes(const rtps::ParticipantDiscoveryInfo& found) const;
+
   mutable std::mutex mutex_;
   std::map<std::string, ParticipantInfo> participants_;
   std::map<std::string, EndpointInfo> endpoints_;

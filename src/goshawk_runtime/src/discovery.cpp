@@ -2,6 +2,7 @@
 #include <sstream>
 
 #include "context_impl.hpp"
+#include "writer_guard.hpp"
 
 namespace goshawk::runtime {
 namespace {
@@ -66,6 +67,7 @@ EndpointInfo endpoint(const Info& info, bool writer) {
 
 void DiscoveryListener::on_participant_discovery(dds::DomainParticipant*,
                                                  rtps::ParticipantDiscoveryInfo&& info) {
+  if (handshakes) tell_handshakes(info);
   const std::string key = text(info.info.m_guid.guidPrefix);
   const std::lock_guard lock(mutex_);
   if (info.status == rtps::ParticipantDiscoveryInfo::REMOVED_PARTICIPANT ||
@@ -83,6 +85,24 @@ void DiscoveryListener::on_participant_discovery(dds::DomainParticipant*,
   const std::string user_data(info.info.m_userData.begin(), info.info.m_userData.end());
   participants_[key] = {key, info.info.m_participantName.to_string(), nodes_in(user_data),
                         version_in(user_data)};
+}
+
+// Fast DDS sends nothing to a participant before this has returned.
+void DiscoveryListener::tell_handshakes(const rtps::ParticipantDiscoveryInfo& found) const {
+  const Participant other = participant_of(found.info.m_guid.guidPrefix);
+  if (found.status == rtps::ParticipantDiscoveryInfo::CHANGED_QOS_PARTICIPANT) return;
+  if (found.status != rtps::ParticipantDiscoveryInfo::DISCOVERED_PARTICIPANT) {
+    return handshakes->left(other);
+  }
+  wire::Handshakes::Locators at;
+  for (const auto& locator : found.info.metatraffic_locators.unicast) at.push_back(locator);
+  handshakes->discovered(other, at);
+}
+
+void DiscoveryListener::onParticipantAuthentication(dds::DomainParticipant*,
+                                                    rtps::ParticipantAuthenticationInfo&& info) {
+  const bool is_good = info.status == rtps::ParticipantAuthenticationInfo::AUTHORIZED_PARTICIPANT;
+  if (handshakes && is_good) handshakes->authorized(participant_of(info.guid.guidPrefix));
 }
 
 void DiscoveryListener::on_publisher_discovery(dds::DomainParticipant* self,

@@ -1,7 +1,7 @@
 // goshawk_pulse NODE...: asks each node for a parameter twenty times a second, for ever, and says
-// in a line of JSON when one answers again after it was silent: {"node": "/tracker",
-// "silent_s": 1.2}. An answer shows that both hear each other, so a stage that is started again and
-// deaf is silent.
+// in a line of JSON when one answers again after it was silent, or from another process than
+// before: {"node": "/tracker", "silent_s": 1.2}. An answer shows that both hear each other, so a
+// stage that is started again and deaf is silent.
 
 #include <fmt/format.h>
 #include <signal.h>
@@ -12,6 +12,7 @@
 #include <map>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "goshawk/runtime/node.hpp"
 #include "goshawk_msgs.h"
@@ -29,13 +30,18 @@ const runtime::Qos kQos = runtime::Qos::reliable_last(50);
 
 std::atomic<bool> g_stop = false;
 
+struct Heard {
+  Steady::time_point last{};
+  runtime::Participant from{};
+};
+
 class Pulse {
  public:
   Pulse(runtime::Node& node, int count, char** names)
       : requests_(node.advertise<ParameterRequest>("/parameter_request", kQos)) {
-    for (int k = 0; k < count; ++k) heard_.emplace(names[k], Steady::time_point{});
+    for (int k = 0; k < count; ++k) heard_.emplace(names[k], Heard{});
     node.subscribe<ParameterAnswer>("/parameter_answer", kQos,
-                                    [this](const auto& m, const auto&) { on_answer(m); });
+                                    [this](const auto& m, const auto& info) { on_answer(m, info.writer); });
     node.every(kAskEvery_s, [this, &node] { g_stop ? node.stop() : ask(); });
   }
 
@@ -51,21 +57,20 @@ class Pulse {
     }
   }
 
-  void on_answer(const ParameterAnswer& answer) {
+  void on_answer(const ParameterAnswer& answer, const runtime::Participant& from) {
     const auto at = heard_.find(answer.node());
     if (at == heard_.end() || answer.client() != "pulse") return;
-    const auto now = Steady::now();
-    const double silent_s = std::chrono::duration<double>(now - at->second).count();
-    const bool is_first = at->second == Steady::time_point{};
-    at->second = now;
-    if (!is_first && silent_s < kSilence_s) return;
+    const Heard before = std::exchange(at->second, Heard{Steady::now(), from});
+    const std::chrono::duration<double> silent = at->second.last - before.last;
+    const bool is_first = before.last == Steady::time_point{};
+    if (before.from == from && silent.count() < kSilence_s) return;
     fmt::print("{{\"node\": \"{}\", \"silent_s\": {:.3f}}}\n", answer.node(),
-               is_first ? 0.0 : silent_s);
+               is_first ? 0.0 : silent.count());
     std::fflush(stdout);
   }
 
   runtime::Publisher<ParameterRequest> requests_;
-  std::map<std::string, Steady::time_point> heard_;
+  std::map<std::string, Heard> heard_;
   std::uint64_t id_ = 0;
 };
 

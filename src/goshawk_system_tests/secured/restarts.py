@@ -1,16 +1,19 @@
 #!/usr/bin/python3
-"""How long a stage that was killed and started again is deaf, with and without DDS Security.
+"""How long a stage is deaf that was killed and started again, or stopped for a while.
 
-    restarts.py COUNT              without
+    restarts.py COUNT              without DDS Security
     restarts.py COUNT KEYS         with the folder of `goshawk secure init`
+    restarts.py --stop S ...       stopped for S seconds instead
 
 Starts four planning stages and goshawk_pulse in the domain of ROS_DOMAIN_ID, kills path_search COUNT
 times, starts it again at once, and says how long it did not answer.
 """
 
+import argparse
 import json
 import os
 import pathlib
+import signal
 import subprocess
 import sys
 import tempfile
@@ -50,9 +53,21 @@ class Pulse:
         return len(self.silences()) >= count
 
 
-def measure(count, keys, folder):
+def measure(count, keys, stop_s, folder):
+    """The silences, sorted, without the time for which it was stopped [s]."""
     def stage(name):
         return start("goshawk_container", name, name, keys, stderr=subprocess.DEVNULL)
+
+    def upset(victim):
+        if not stop_s:
+            victim.kill()
+            victim.wait()
+            return stage(VICTIM)
+        victim.send_signal(signal.SIGSTOP)
+        time.sleep(stop_s)
+        victim.send_signal(signal.SIGCONT)
+        return victim
+
     others = [stage(name) for name in OTHERS]
     victim, pulse = stage(VICTIM), Pulse(folder, keys)
     try:
@@ -60,12 +75,10 @@ def measure(count, keys, folder):
             sys.exit("it was never heard")
         for number in range(count):
             time.sleep(1.0)
-            victim.kill()
-            victim.wait()
-            victim = stage(VICTIM)
+            victim = upset(victim)
             if not pulse.wait(number + 2):
-                sys.exit(f"deaf for more than {LIMIT_S} s after restart {number + 1}")
-        return sorted(pulse.silences()[1:])
+                sys.exit(f"deaf for more than {LIMIT_S} s at time {number + 1}")
+        return sorted(silent_s - stop_s for silent_s in pulse.silences()[1:])
     finally:
         for process in [victim, pulse.process, *others]:
             process.kill()
@@ -73,11 +86,15 @@ def measure(count, keys, folder):
 
 
 def main():
-    count, keys = int(sys.argv[1]), sys.argv[2] if len(sys.argv) > 2 else ""
+    parser = argparse.ArgumentParser(usage=__doc__)
+    parser.add_argument("--stop", type=float, default=0.0)
+    parser.add_argument("count", type=int)
+    parser.add_argument("keys", nargs="?", default="")
+    given = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
-        silent_s = measure(count, keys, folder)
-    print(json.dumps({"restarts": count, "p50_s": silent_s[len(silent_s) // 2],
-                      "above_10_s": sum(s > 10.0 for s in silent_s), "longest_s": silent_s[-1]}))
+        silent_s = measure(given.count, given.keys, given.stop, folder)
+    print(json.dumps({"times": given.count, "p50_s": round(silent_s[len(silent_s) // 2], 3),
+                      "longest_s": round(silent_s[-1], 3)}))
 
 
 if __name__ == "__main__":

@@ -2,7 +2,10 @@
 """DDS Security: who may read and write what, by `goshawk secure init` and `goshawk launch --secure`."""
 
 import json
+import os
+import signal
 import sys
+import time
 
 import harness
 from harness import SOURCE, until
@@ -12,6 +15,7 @@ sys.path.insert(0, str(SOURCE / "src" / "goshawk_bringup" / "scripts"))
 import topic_rights  # noqa: E402
 
 PROFILE = "FASTRTPS_DEFAULT_PROFILES_FILE"
+LEASE_S = 3.0  # goshawk_runtime, context.cpp
 NODES = {**{name: name for name in topic_rights.STAGES
             if name not in ("vehicle", "visualizer", "sensors")}, "simulator": "vehicle"}
 # Opened only if they are needed: the map before a landing, the truth beside a sensor's error, the
@@ -130,7 +134,36 @@ class SecuredFlight(StackTest):
                                     "--timeout", "60", timeout_s=40)
         self.assertEqual(told.status, 0, str(told))
 
-    def test_6_nothing_was_touched(self):
+    def arrives(self, place):
+        """Sent again until it arrives: on a busy machine handshakes may take longer than the
+        navigator waits. A stage that stays deaf never flies."""
+        def arrived():
+            state = self.stack.fly_to(place)
+            return state is not None and state["state"] == "arrived"
+        return until(arrived, 120.0)
+
+    def test_6_a_stage_that_was_killed_is_heard_again(self):
+        for stage, place in (("corridor_builder", PLACES[0]), ("tracker", PLACES[1])):
+            with self.subTest(stage):
+                os.kill(self.stack.launch.pids()[stage], signal.SIGKILL)
+                log = self.stack.launch.logs / f"{stage}.log"
+                again = until(lambda f=log: f.read_text(errors="replace").count("ready: ") > 1, 30.0)
+                self.assertTrue(again, self.stack.launch.tails())
+                self.assertTrue(self.arrives(place), self.stack.launch.tails())
+
+    def test_7_a_stage_that_was_silent_for_longer_than_its_lease_is_heard_again(self):
+        """The others have forgotten it and its keys, it has forgotten nothing."""
+        for stage, place in (("path_search", PLACES[0]), ("navigator", PLACES[1])):
+            with self.subTest(stage):
+                pid = self.stack.launch.pids()[stage]
+                os.kill(pid, signal.SIGSTOP)
+                try:
+                    time.sleep(LEASE_S + 1.0)
+                finally:
+                    os.kill(pid, signal.SIGCONT)
+                self.assertTrue(self.arrives(place), self.stack.launch.tails())
+
+    def test_8_nothing_was_touched(self):
         self.check_untouched()
 
 

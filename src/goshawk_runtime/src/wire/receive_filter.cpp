@@ -16,12 +16,14 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cstring>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <vector>
 
 #include "datagram_check.hpp"
+#include "handshake_datagrams.hpp"
 
 namespace goshawk::runtime::wire {
 namespace {
@@ -78,6 +80,7 @@ class FilteringTransport : public transport::ChainingTransport {
             rtps::LocatorsIterator* begin, rtps::LocatorsIterator* end,
             const std::chrono::steady_clock::time_point& timeout) override {
     if (options_.tap) options_.tap(bytes(buffer, size), true);
+    if (options_.handshakes) greet(*low, timeout);
     return low->send(buffer, size, begin, end, timeout);
   }
 
@@ -89,10 +92,10 @@ class FilteringTransport : public transport::ChainingTransport {
     std::string_view fault = fault_of(datagram);
     if (fault.empty() && loopback_only_) fault = fault_of_sender(datagram, remote);
     if (!fault.empty()) return options_.refusals->add(fault, rtps::IPLocator::to_string(remote));
-    thread_local std::vector<rtps::octet> padded;
-    if (padded.size() < size + kPadding) padded.assign(2 * size + kPadding, 0);
-    std::copy_n(buffer, size, padded.begin());
-    next->OnDataReceived(padded.data(), size, local, remote);
+    if (options_.handshakes && options_.handshakes->must_forget(datagram)) {
+      pass_on(*next, make_farewell(sender_of(datagram)), local, remote);
+    }
+    pass_on(*next, datagram, local, remote);
   }
 
  private:
@@ -111,15 +114,43 @@ class FilteringTransport : public transport::ChainingTransport {
     transport::TransportReceiverInterface& next_;
   };
 
+  static void pass_on(transport::TransportReceiverInterface& next,
+                      std::span<const std::byte> datagram, const rtps::Locator_t& local,
+                      const rtps::Locator_t& remote) {
+    thread_local std::vector<rtps::octet> padded;
+    if (padded.size() < datagram.size() + kPadding) {
+      padded.assign(2 * datagram.size() + kPadding, 0);
+    }
+    std::memcpy(padded.data(), datagram.data(), datagram.size());
+    next.OnDataReceived(padded.data(), std::uint32_t(datagram.size()), local, remote);
+  }
+
+  static SenderTable::Prefix sender_of(std::span<const std::byte> datagram) {
+    SenderTable::Prefix sender;
+    std::copy_n(datagram.begin() + kPrefixAt, sender.size(), sender.begin());
+    return sender;
+  }
+
+  // Through the socket that discovery uses, so that a greeting comes before the handshake.
+  void greet(rtps::SenderResource& low, const std::chrono::steady_clock::time_point& timeout) {
+    const std::int64_t now_ns =
+        std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
+    for (const auto& [to, at] : options_.handshakes->greetings(&low, now_ns)) {
+      const auto greeting = make_greeting(*options_.handshakes->own(), to);
+      transport::Locators begin(at.begin()), end(at.end());
+      low.send(reinterpret_cast<const rtps::octet*>(greeting.data()),
+               std::uint32_t(greeting.size()), &begin, &end, timeout);
+    }
+  }
+
   std::string_view fault_of_sender(std::span<const std::byte> datagram,
                                    const rtps::Locator_t& remote) {
     constexpr std::array<rtps::octet, 4> kLoopbackAddress{127, 0, 0, 1};
     if (!std::equal(kLoopbackAddress.begin(), kLoopbackAddress.end(), remote.address + 12)) {
       return "it does not come from 127.0.0.1";
     }
-    SenderTable::Prefix sender;
-    std::copy_n(datagram.begin() + kPrefixAt, sender.size(), sender.begin());
-    const bool own = options_.senders->admits(sender, rtps::IPLocator::getPhysicalPort(remote));
+    const bool own =
+        options_.senders->admits(sender_of(datagram), rtps::IPLocator::getPhysicalPort(remote));
     return own ? "" : "it names a participant that sends from another port";
   }
 

@@ -11,6 +11,7 @@
 #include <string>
 #include <string_view>
 
+#include "handshakes.hpp"
 #include "sender_table.hpp"
 
 namespace goshawk::runtime::wire {
@@ -33,13 +34,14 @@ class Refusals {
 
 struct FilterOptions {
   std::shared_ptr<Refusals> refusals;
-  std::shared_ptr<SenderTable> senders;  // of the transport that listens on 127.0.0.1 alone
+  std::shared_ptr<SenderTable> senders;      // of the transport that listens on 127.0.0.1 alone
+  std::shared_ptr<Handshakes> handshakes{};  // null without DDS Security
   std::function<void(std::span<const std::byte> datagram, bool sent)> tap{};  // may be empty
 };
 
 /// A transport that passes on only what fault_of() admits. If it listens on 127.0.0.1 alone, it
 /// also refuses what comes from elsewhere, and what names a participant that sends from another
-/// port.
+/// port. Under DDS Security it greets each participant that is met (handshakes.hpp).
 ///
 /// @param plain UDPv4, UDPv6, TCPv4, TCPv6 or shared memory
 /// @return a descriptor of the same kind; the given one itself if it is of none of these
