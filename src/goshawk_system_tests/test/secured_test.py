@@ -19,9 +19,9 @@ LEASE_S = 3.0  # goshawk_runtime, context.cpp
 NODES = {**{name: name for name in topic_rights.STAGES
             if name not in ("vehicle", "visualizer", "sensors")}, "simulator": "vehicle"}
 # Opened only if they are needed: the map before a landing, the truth beside a sensor's error, the
-# clouds of Goshawk's own sensors.
+# clouds and images of Goshawk's own sensors.
 LATER = {"tracker": set(topic_rights.MAP), "vehicle": {*topic_rights.MAP, "odom_true"},
-         "map_server": {"points"}}
+         "map_server": {"points", "depth/image_rect_raw", "depth/camera_info"}}
 
 
 class SecuredStages(StackTest):
