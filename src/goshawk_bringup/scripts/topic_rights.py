@@ -10,8 +10,9 @@ ALL = ["/*"]
 
 # name: what it reads and writes besides EVERY_NODE (stages also write stage_report)
 STAGES = {
-    # Its cloud_in is remapped to points if Goshawk's own sensors make them (launch file live).
-    "map_server": {"reads": ["cloud_in", "points", "odom", "/tf", "/tf_static"],
+    # cloud_in and depth_in are remapped if Goshawk's own sensors fill them (launch file live).
+    "map_server": {"reads": ["cloud_in", "points", "depth_in", "depth/image_rect_raw",
+                             "depth_info_in", "depth/camera_info", "odom", "/tf", "/tf_static"],
                    "writes": [*MAP, "octomap_binary"]},
     "path_search": {"reads": [*MAP, "plan_request"], "writes": ["path"]},
     "corridor_builder": {"reads": [*MAP, "plan_request", "path"], "writes": ["corridor"]},

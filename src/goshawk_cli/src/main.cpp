@@ -43,6 +43,7 @@ void describe(Program& program) {
   add_check(program);
   add_world(program);
   add_map(program);
+  add_sense(program);
   add_campaign(program);
   add_launch(program);
   add_goto(program);

@@ -190,6 +190,34 @@ TEST(LineIsFree, AgreesWithTheCubesThatTheSegmentMeets) {
   EXPECT_GT(blocked, 300);
 }
 
+// Long ones, and ends on or next to the faces of the grid: the walk and the samples that
+// line_is_free takes inside see what the supercover does.
+TEST(LineIsFree, LooksAtTheSupercoverOfLongSegments) {
+  Random random(6);
+  int free = 0;
+  for (int n = 0; n < 20000; ++n) {
+    const Index3 size{60, 40, 20};
+    BitGrid grid(size, true);
+    for (int k = random.below(60); k > 0; --k) {
+      grid.set({random.below(size.x), random.below(size.y), random.below(size.z)}, true);
+    }
+    const auto point = [&] {
+      const Vec3 upper(size.x, size.y, size.z);
+      if (n % 3 == 0) return Vec3(upper.cwiseProduct(random_point(random, 1.0)));
+      Vec3 p(random.below(size.x), random.below(size.y), random.below(size.z));
+      if (n % 3 == 1) return Vec3(p + Vec3::Constant(0.5));
+      p[random.below(3)] += 1e-9 * random.uniform(0.5, 3.0);
+      return Vec3(p.cwiseMin(upper - Vec3::Constant(1e-7)));
+    };
+    const Vec3 a = point(), b = point();
+    bool expected = true;
+    for (const Index3 i : supercover(a, b)) expected &= !grid.test(i);
+    ASSERT_EQ(line_is_free(grid, a, b), expected) << a.transpose() << " - " << b.transpose();
+    free += expected;
+  }
+  EXPECT_GT(free, 3000);
+}
+
 TEST(LineIsFree, IsBlockedByACubeThatIsOnlyTouched) {
   BitGrid grid({8, 8, 8}, true);
   grid.set({4, 4, 4}, true);

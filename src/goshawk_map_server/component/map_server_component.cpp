@@ -4,10 +4,12 @@
 #include <spdlog/logger.h>
 
 #include <deque>
+#include <map>
 #include <optional>
 
 #include "beginning.hpp"
-#include "cloud.hpp"
+#include "goshawk/map_server_messages/cloud.hpp"
+#include "goshawk/map_server_messages/depth_image.hpp"
 #include "goshawk/conversions/grid.hpp"
 #include "goshawk/conversions/vehicle.hpp"
 #include "goshawk/map_server/config.hpp"
@@ -31,7 +33,8 @@ namespace msg = goshawk_msgs::msg;
 constexpr double kWholeMapPeriod_s = 1.0;
 // How long poses are kept: clouds that come later are refused.
 constexpr double kPosesKept_s = 5.0;
-constexpr std::size_t kMostWaiting = 8;  // clouds that wait for odometry
+constexpr std::size_t kMostWaiting = 8;   // clouds that wait for odometry
+constexpr std::size_t kMostCameras = 16;  // frames whose CameraInfo is kept
 constexpr double kWaitingPeriod_s = 0.05;
 
 Beginning begin(const Config& config, Node& node) {
@@ -42,7 +45,8 @@ Beginning begin(const Config& config, Node& node) {
   return *std::move(beginning);
 }
 
-/// A map file; cloud_in, odom, /tf and /tf_static -> map/voxels, map/voxels/updates, octomap_binary
+/// A map file; cloud_in, depth_in and depth_info_in, odom, /tf and /tf_static -> map/voxels,
+/// map/voxels/updates, octomap_binary
 class MapServerComponent : public Component {
  public:
   explicit MapServerComponent(Node& node)
@@ -63,6 +67,12 @@ class MapServerComponent : public Component {
     node.subscribe<sensor_msgs::msg::PointCloud2>(
         "cloud_in", Qos::best_effort(2),
         [this](const sensor_msgs::msg::PointCloud2& m, const MessageInfo&) { on_cloud(m); });
+    node.subscribe<sensor_msgs::msg::CameraInfo>(
+        "depth_info_in", Qos::best_effort(2),
+        [this](const sensor_msgs::msg::CameraInfo& m, const MessageInfo&) { on_camera(m); });
+    node.subscribe<sensor_msgs::msg::Image>(
+        "depth_in", Qos::best_effort(2),
+        [this](const sensor_msgs::msg::Image& m, const MessageInfo&) { on_depth(m); });
     node.subscribe<nav_msgs::msg::Odometry>(
         "odom", Qos::best_effort(50),
         [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) { on_odometry(m); },
@@ -85,13 +95,12 @@ class MapServerComponent : public Component {
     publish_whole();
     malloc_trim(0);  // what loading and publishing took for a moment; glibc may keep it for ever
     const GridGeometry geometry = map_.geometry();
-    reporter_.ready(fmt::format("serves {} voxels of {:.3g} m, obstacles inflated by {:.3g} m{}",
-                                to_text(geometry.size), geometry.resolution_m,
-                                map_.growth().inflation_m,
-                                beginning_.bricks == 0
-                                    ? ""
-                                    : fmt::format("; {} bricks are from its journal",
-                                                  beginning_.bricks)));
+    reporter_.ready(
+        fmt::format("serves {} voxels of {:.3g} m, obstacles inflated by {:.3g} m{}",
+                    to_text(geometry.size), geometry.resolution_m, map_.growth().inflation_m,
+                    beginning_.bricks == 0
+                        ? ""
+                        : fmt::format("; {} bricks are from its journal", beginning_.bricks)));
     if (beginning_.journal_fault) reporter_.fault(*beginning_.journal_fault);
     tell_of_forgotten();
   }
@@ -167,12 +176,46 @@ class MapServerComponent : public Component {
     }
   }
 
+  struct Waiting {
+    SensorCloud cloud;
+    std::string frame;
+    std::int64_t since_ns;
+  };
+
   void on_cloud(const sensor_msgs::msg::PointCloud2& m) {
     Waiting next{{}, m.header().frame_id(), node_.monotonic_ns()};
     if (auto s = read_cloud(m, std::size_t(config_.max_points), next.cloud); !s) {
       return reporter_.fault(s.error());
     }
     if (m.width() == 0 || m.height() == 0) return;  // nothing was seen
+    take(std::move(next));
+  }
+
+  void on_camera(const sensor_msgs::msg::CameraInfo& m) {
+    const std::string& frame = m.header().frame_id();
+    const auto camera = read_camera_info(m);
+    if (!camera) {
+      cameras_.erase(frame);
+      return reporter_.fault(camera.error());
+    }
+    if (cameras_.contains(frame) || cameras_.size() < kMostCameras) cameras_[frame] = *camera;
+  }
+
+  void on_depth(const sensor_msgs::msg::Image& m) {
+    Waiting next{{}, m.header().frame_id(), node_.monotonic_ns()};
+    const auto camera = cameras_.find(next.frame);
+    if (camera == cameras_.end()) {
+      return reporter_.fault(fail(ErrorCode::invalid_input,
+                                  fmt::format("no CameraInfo of frame '{}' has come on "
+                                              "depth_info_in: its depth images cannot be placed",
+                                              next.frame)));
+    }
+    const auto status = read_depth(m, camera->second, std::size_t(config_.max_points), next.cloud);
+    if (!status) return reporter_.fault(status.error());
+    take(std::move(next));
+  }
+
+  void take(Waiting next) {
     if (waiting_.size() == kMostWaiting) {
       reporter_.fault(fail(ErrorCode::tracking_lost,
                            "clouds come faster than the odometry that places them: the oldest is "
@@ -182,12 +225,6 @@ class MapServerComponent : public Component {
     waiting_.push_back(std::move(next));
     place_waiting();
   }
-
-  struct Waiting {
-    SensorCloud cloud;
-    std::string frame;
-    std::int64_t since_ns;
-  };
 
   // In their order: a cloud whose odometry is still to come holds up those behind it.
   void place_waiting() {
@@ -281,6 +318,7 @@ class MapServerComponent : public Component {
   Publisher<octomap_msgs::msg::Octomap> octomap_;
   PoseBuffer odometry_;
   FrameTree frames_;
+  std::map<std::string, Pinhole> cameras_;  // by their frame
   std::deque<Waiting> waiting_;
   PlacedCloud placed_;           // their memory is used again
   std::vector<Vec3> body_path_;  // since the scan before

@@ -118,10 +118,13 @@ Result<GridGeometry> raster_of(const Box& box, double resolution_m, std::int64_t
                             to_text(box.lower_map), to_text(box.upper_map)));
   }
   if (lower.minCoeff() < -kHalfKeys || upper.maxCoeff() > kHalfKeys) {
+    const Vec3 offset = 1000.0 * (box.lower_map / 1000.0).array().round().matrix();
     return too_large(fmt::format("the map reaches from {} to {} m, beyond OctoMap's 32768 voxels of "
                                  "{:g} m from the origin: give a smaller box or a coarser "
-                                 "resolution",
-                                 to_text(box.lower_map), to_text(box.upper_map), resolution_m));
+                                 "resolution, or subtract an offset as {:.0f}, {:.0f}, {:.0f} m "
+                                 "from all coordinates",
+                                 to_text(box.lower_map), to_text(box.upper_map), resolution_m,
+                                 offset.x(), offset.y(), offset.z()));
   }
   // A corner on the raster, but for rounding, must not add a layer of voxels.
   const Eigen::Array3d lo = (lower.array() + 1e-6).floor();

@@ -37,6 +37,10 @@ class Runs {
   int end_ = 0;
 };
 
+int runs_in(std::uint64_t word) {
+  return std::popcount(word & ~(word << 1));
+}
+
 /// Calls touch(i, j) for the i-th run of a and the j-th of b that come within `reach` of each other
 /// along x.
 template <typename Touch>
@@ -115,19 +119,12 @@ Index3 Components::place(std::size_t brick) const {
           int(row / std::size_t(count_.y))};
 }
 
-// Rows outside the map are not free.
-Components::Rows Components::free_rows(Index3 brick) const {
-  Rows rows{};
-  const std::uint64_t inside = bits_inside(brick, held_.size());
-  const int y0 = kBrickSide * brick.y, z0 = kBrickSide * brick.z;
-  const int y_rows = std::min(kBrickSide, held_.size().y - y0);
-  const int z_rows = std::min(kBrickSide, held_.size().z - z0);
-  for (int z = 0; z < z_rows; ++z) {
-    for (int y = 0; y < y_rows; ++y) {
-      rows[std::size_t(kBrickSide * z + y)] = ~held_.row(y0 + y, z0 + z)[brick.x] & inside;
-    }
-  }
-  return rows;
+// The row of a brick, by its number in it; rows outside the map are not free.
+std::uint64_t Components::free_row(Index3 brick, int row) const {
+  const int y = kBrickSide * brick.y + row % kBrickSide;
+  const int z = kBrickSide * brick.z + row / kBrickSide;
+  if (y >= held_.size().y || z >= held_.size().z) return 0;
+  return ~held_.row(y, z)[brick.x] & bits_inside(brick, held_.size());
 }
 
 bool Components::advance(const BitGrid& blocked, int bricks) {
@@ -189,20 +186,37 @@ void Components::mark(Index3 brick) {
   }
 }
 
-void Components::label(Index3 at, Brick& brick) {
-  const Rows free = free_rows(at);
+// A row that equals the one beside it has its runs: each touches its like, and no other one.
+void Components::number_runs(Index3 at, Brick& brick) {
   runs_.clear();
   for (int row = 0; row < kRows; ++row) {
-    brick.first_run[std::size_t(row)] = std::uint16_t(runs_.size());
-    for (Runs run(free[std::size_t(row)]); !run.at_end(); run.next()) {
-      runs_.push_back(std::uint16_t(runs_.size()));
+    const std::uint64_t free = rows_[std::size_t(row)] = free_row(at, row);
+    const auto is_like = [&](int other) { return rows_[std::size_t(other)] == free; };
+    std::uint16_t& first = brick.first_run[std::size_t(row)];
+    if (free == 0) {
+      first = kNoRun;
+    } else if (row % kBrickSide != 0 && is_like(row - 1)) {
+      first = brick.first_run[std::size_t(row - 1)];
+    } else if (row >= kBrickSide && is_like(row - kBrickSide)) {
+      first = brick.first_run[std::size_t(row - kBrickSide)];
+    } else {
+      first = std::uint16_t(runs_.size());
+      for (Runs run(free); !run.at_end(); run.next()) {
+        runs_.push_back(std::uint16_t(runs_.size()));
+      }
     }
   }
-  brick.first_run[kRows] = std::uint16_t(runs_.size());
-  for (const RowPair& pair : within_) {
-    const std::uint16_t own = brick.first_run[pair.own], other = brick.first_run[pair.other];
-    each_touch(free[pair.own], free[pair.other], reach_, [&](int i, int j) {
-      unite(runs_, std::uint16_t(own + i), std::uint16_t(other + j));
+}
+
+void Components::label(Index3 at, Brick& brick) {
+  number_runs(at, brick);
+  RunPair last{};
+  for (const RowPair& rows : within_) {
+    const RunPair pair{brick.first_run[rows.own], brick.first_run[rows.other]};
+    if (pair.own == pair.other || !pair.is_new(last)) continue;
+    last = pair;
+    each_touch(rows_[rows.own], rows_[rows.other], reach_, [&](int i, int j) {
+      unite(runs_, std::uint16_t(pair.own + i), std::uint16_t(pair.other + j));
     });
   }
   brick.component.resize(runs_.size());
@@ -215,32 +229,51 @@ void Components::label(Index3 at, Brick& brick) {
   brick.stale = false;
 }
 
+/// The free rows of a brick, each looked up when it is first asked for.
+class Components::BrickRows {
+ public:
+  BrickRows(const Components& components, Index3 brick) : components_(components), brick_(brick) {}
+
+  std::uint64_t operator[](std::uint8_t row) {
+    const std::uint64_t bit = std::uint64_t{1} << row;
+    if ((known_ & bit) == 0) rows_[row] = components_.free_row(brick_, row);
+    known_ |= bit;
+    return rows_[row];
+  }
+
+ private:
+  const Components& components_;
+  Index3 brick_;
+  std::uint64_t known_ = 0;
+  std::array<std::uint64_t, kRows> rows_{};
+};
+
 void Components::link(Index3 at, Brick& brick) {
   brick.links.clear();
-  const Rows own_rows = free_rows(at);
+  BrickRows own_rows(*this, at);
   for (std::size_t s = 0; s < sides_.size(); ++s) {
     const Side& side = sides_[s];
     const Index3 there = at + side.offset;
     if (!contains(there)) continue;
     const Brick& other = bricks_[number(there)];
-    const Rows other_rows = free_rows(there);
-    for (const RowPair& pair : side.rows) {
-      const std::uint64_t a = own_rows[pair.own], b = other_rows[pair.other];
-      if (a == 0 || b == 0) continue;
+    BrickRows other_rows(*this, there);
+    RunPair last{};
+    for (const RowPair& rows : side.rows) {
+      const RunPair pair{brick.first_run[rows.own], other.first_run[rows.other]};
+      if (!pair.is_new(last)) continue;
+      last = pair;
+      const std::uint64_t a = own_rows[rows.own], b = other_rows[rows.other];
       const auto touch = [&](int i, int j) {
-        const Link link{brick.component[std::size_t(brick.first_run[pair.own] + i)],
-                        other.component[std::size_t(other.first_run[pair.other] + j)],
-                        std::uint8_t(s)};
+        const Link link{brick.component[std::size_t(pair.own + i)],
+                        other.component[std::size_t(pair.other + j)], std::uint8_t(s)};
         if (brick.links.empty() || !(brick.links.back() == link)) brick.links.push_back(link);
       };
-      const int last_a = brick.first_run[pair.own + 1U] - brick.first_run[pair.own] - 1;
-      const int last_b = other.first_run[pair.other + 1U] - other.first_run[pair.other] - 1;
       if (side.offset.x == 0) {
         each_touch(a, b, reach_, touch);
       } else if (side.offset.x < 0) {
-        if ((a & b >> 63) != 0) touch(0, last_b);
+        if ((a & b >> 63) != 0) touch(0, runs_in(b) - 1);
       } else if ((b & a >> 63) != 0) {
-        touch(last_a, 0);
+        touch(runs_in(a) - 1, 0);
       }
     }
   }

@@ -132,9 +132,10 @@ bool PathPruner::relax(std::size_t to, double bound) {
   const double rest = (nodes_.back() - p).norm();
   heap_.clear();
   for (std::size_t c = 0; c < to; ++c) {
-    if (reached_[c] == kNever) continue;
-    const double sum = reached_[c] + (p - nodes_[std::size_t(candidates_[c])]).norm();
-    if (sum + rest < bound) heap_.push_back({sum, int(c)});
+    const double left = bound - rest - reached_[c];
+    const double squared = (p - nodes_[std::size_t(candidates_[c])]).squaredNorm();
+    if (left <= 0.0 || squared >= left * left) continue;
+    heap_.push_back({reached_[c] + std::sqrt(squared), int(c)});
   }
   const auto later = [](const Candidate& a, const Candidate& b) {
     return a.length != b.length ? a.length > b.length : a.from > b.from;

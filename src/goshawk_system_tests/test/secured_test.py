@@ -19,9 +19,9 @@ LEASE_S = 3.0  # goshawk_runtime, context.cpp
 NODES = {**{name: name for name in topic_rights.STAGES
             if name not in ("vehicle", "visualizer", "sensors")}, "simulator": "vehicle"}
 # Opened only if they are needed: the map before a landing, the truth beside a sensor's error, the
-# clouds of Goshawk's own sensors.
+# clouds and images of Goshawk's own sensors.
 LATER = {"tracker": set(topic_rights.MAP), "vehicle": {*topic_rights.MAP, "odom_true"},
-         "map_server": {"points"}}
+         "map_server": {"points", "depth/image_rect_raw", "depth/camera_info"}}
 
 
 class SecuredStages(StackTest):
@@ -147,8 +147,9 @@ class SecuredFlight(StackTest):
             with self.subTest(stage):
                 os.kill(self.stack.launch.pids()[stage], signal.SIGKILL)
                 log = self.stack.launch.logs / f"{stage}.log"
-                again = until(lambda f=log: f.read_text(errors="replace").count("ready: ") > 1, 30.0)
-                self.assertTrue(again, self.stack.launch.tails())
+                ready = until(
+                    lambda f=log: f.read_text(errors="replace").count("ready: ") > 1, 30.0)
+                self.assertTrue(ready, self.stack.launch.tails())
                 self.assertTrue(self.arrives(place), self.stack.launch.tails())
 
     def test_7_a_stage_that_was_silent_for_longer_than_its_lease_is_heard_again(self):

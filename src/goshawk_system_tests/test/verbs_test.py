@@ -10,7 +10,7 @@ ALL_VERBS = ["plan", "fly", "check", "world", "campaign", "launch", "goto", "hol
              "bench search", "bench scenario", "bench stage", "bench dds", "bench corridor",
              "bench trajectory", "bench updates", "bench tracking", "bench map", "bench sensors",
              "conform", "record", "replay", "bag record", "bag play", "bag info",
-             "map info", "map save", "map crop", "map merge", "map diff",
+             "map info", "map save", "map crop", "map merge", "map diff", "sense check",
              "interface list", "interface show", "topic list", "topic info", "topic type",
              "topic find", "topic echo", "topic hz", "topic delay", "topic bw", "topic pub",
              "node list", "node info", "param list", "param get", "param set", "param describe",
@@ -47,6 +47,8 @@ class BadCalls(CallsCase):
         self.wrong(["map", "crop", "a.bt", "b.bt", "--lower", "0,0,0"], "--upper")
         self.wrong(["map", "merge", "all.bt", "a.bt", "--rule", "newer"], "newer", "later")
         self.wrong(["map", "diff", "a.bt"], "files")
+        self.wrong(["sense", "chekc", "a.mcap"], "chekc", "check")
+        self.wrong(["sense", "check", "a.mcap", "--a-max", "0"], "--a-max")
 
     def test_wrong_options_answer_in_json_where_that_is_asked_for(self):
         for verb in ALL_VERBS:

@@ -1,7 +1,8 @@
-#include "cloud.hpp"
+#include "goshawk/map_server_messages/cloud.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -16,6 +17,7 @@ using sensor_msgs::msg::PointField;
 
 constexpr std::uint8_t kUint32 = 6, kFloat32 = 7, kFloat64 = 8;
 constexpr double kLongestScan_s = 1.0;
+constexpr double kFarthestFloat_m = 1e5;  // float32 tells 8 mm apart there
 
 std::size_t bytes_of(std::uint8_t type) {
   constexpr std::array<std::size_t, 9> bytes{0, 1, 1, 2, 2, 4, 4, 4, 8};
@@ -147,6 +149,22 @@ Status read_points(const PointCloud2& m, const std::array<const PointField*, 3>&
   return success();
 }
 
+// In coordinates of a map projection float32 is too coarse: 0.5 m at 5,000,000 m.
+Status check_near(const PointCloud2& m, const SensorCloud& cloud) {
+  const PointField* x = find(m, "x");
+  const bool coarse = x->datatype() == kFloat32 && m.header().frame_id() == conversions::kMapFrame;
+  if (!coarse || cloud.points.empty()) return success();
+  const auto size = [](const Vec3& p) { return p.cwiseAbs().maxCoeff(); };
+  const Vec3 nearest = std::ranges::min(cloud.points, {}, size);
+  if (size(nearest) <= kFarthestFloat_m) return success();
+  const Vec3 offset = 1000.0 * (nearest / 1000.0).array().round().matrix();
+  return fail(ErrorCode::invalid_input,
+              fmt::format("the cloud's points are {:.0f} m and more from the origin of frame map, "
+                          "where float32 is too coarse: subtract an offset as {:.0f}, {:.0f}, "
+                          "{:.0f} m from clouds, odometry and goals",
+                          size(nearest), offset.x(), offset.y(), offset.z()));
+}
+
 }  // namespace
 
 Status read_cloud(const PointCloud2& m, std::size_t max_points, SensorCloud& cloud) {
@@ -160,7 +178,8 @@ Status read_cloud(const PointCloud2& m, std::size_t max_points, SensorCloud& clo
   const auto places = places_of(m);
   if (!places) return places.error();
   if (auto status = check_size(m, max_points); !status) return status;
-  return read_points(m, *places, cloud);
+  if (auto status = read_points(m, *places, cloud); !status) return status;
+  return check_near(m, cloud);
 }
 
 }  // namespace goshawk::map_server
