@@ -10,7 +10,7 @@
 namespace goshawk {
 namespace {
 
-constexpr int kFarthest = 50;  // [voxels] around a point in which the cause is looked for
+constexpr int kMostReach = 50;  // [voxels] around a point in which the cause is looked for
 
 /// The nearest voxel that keeps a point's voxel blocked, of one kind.
 struct Cause {
@@ -31,7 +31,7 @@ double squared_gap(Index3 d) {
 template <typename IsCause>
 Cause nearest(const VoxelGrid& grid, Index3 at, const IsCause& is_cause) {
   const double radius = grid.inflation_m / grid.geometry.resolution_m;
-  const int reach = int(std::min(std::ceil(radius) + 1.0, double(kFarthest)));
+  const int reach = int(std::min(std::ceil(radius) + 1.0, double(kMostReach)));
   Cause cause;
   int best_steps = std::numeric_limits<int>::max();
   for (int z = -reach; z <= reach; ++z) {
