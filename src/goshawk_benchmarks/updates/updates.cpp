@@ -91,7 +91,8 @@ tracker::Tracker flying_tracker() {
                      .velocity = Vec3(0.0, k == 0 || k == 48 ? 0.0 : 1.0, 0.0)};
   };
   for (int k = 0; k < 48; ++k) {
-    trajectory.pieces.push_back(BezierPiece::between(knot(k), knot(k + 1), 1.0));
+    const bool is_at_rest = k == 0 || k == 47;  // at one end
+    trajectory.pieces.push_back(BezierPiece::between(knot(k), knot(k + 1), is_at_rest ? 2.0 : 1.0));
   }
   auto certified = certify(std::move(trajectory), {Polytope::box(Vec3::Zero(), Vec3::Constant(50))},
                            {.v_max_m_s = 5.0, .a_max_m_s2 = 9.0}, knot(0), knot(48));

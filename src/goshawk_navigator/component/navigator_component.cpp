@@ -247,7 +247,9 @@ class NavigatorComponent : public Component {
         published_.push_back(message_of(*commit));
     }
     const auto legs = published_;
-    remember();
+    // A request for a better plan changes nothing that the next navigator must know.
+    const auto is_request = [](const Order& o) { return std::holds_alternative<PlanRequest>(o); };
+    if (!std::ranges::all_of(orders, is_request)) remember();
     for (const Order& order : orders) {
       if (const auto* commit = std::get_if<Commit>(&order)) publish(*commit, legs);
       if (const auto* request = std::get_if<PlanRequest>(&order)) publish(*request);

@@ -142,6 +142,9 @@ void Navigator::on_tracker_report(std::uint64_t id, const Error& outcome, std::i
     leg->accepted = true;
     return;
   }
+  // A later stop that is not taken leaves the earlier one, which leads to the same goal; one that
+  // gave way to an even later stop leaves that.
+  if (schedule_.drop_later_stop(id)) return say_what_is_flown(now_ns);
   if (now_ns - leg->start_ns() > to_ns(kFlown_s)) pursuit_.failures = 0;
   left_ = Left{*leg, now_ns, !pursuit_.open};
   if (leg->accepted) {

@@ -36,6 +36,18 @@ void Schedule::drop_refused(std::uint64_t id) {
   legs_.erase(unanswered, legs_.end());
 }
 
+bool Schedule::drop_later_stop(std::uint64_t id) {
+  const auto leg = std::ranges::find(legs_, id, &Leg::id);
+  if (leg == legs_.end() || leg->accepted) return false;
+  const auto next = leg + 1;
+  const bool follows = leg->continues && leg != legs_.begin();
+  const bool leads = next != legs_.end() && next->continues;
+  if (!follows && !leads) return false;
+  if (!follows) next->continues = false;
+  legs_.erase(leg);
+  return true;
+}
+
 void Schedule::forget_before(std::int64_t now_ns) {
   const auto next =
       std::ranges::find_if(legs_, [&](const Leg& leg) { return leg.start_ns() > now_ns; });

@@ -106,6 +106,22 @@ TEST(Replanning, TheTrackersRefusalOfALaterStopLeavesTheEarlierOne) {
   EXPECT_EQ(h.last().state, State::flying);
 }
 
+TEST(Replanning, ALaterStopThatGaveWayToAnEvenLaterOneIsForgottenAlone) {
+  Harness h = approaching();
+  h.tracker_says(h.commits[0].id(), ok());
+  h.pass(1.0);
+  h.map(seen_below(9, 7));
+  h.map(seen_below(10, 8));
+  ASSERT_EQ(h.commits.size(), 3u);
+  h.tracker_says(h.commits[1].id(), {ErrorCode::cancelled, "a newer one has come"});
+  h.tracker_says(h.commits[2].id(), ok());
+  h.pass(0.1);
+  const auto legs = h.navigator.memory().legs;
+  ASSERT_EQ(legs.size(), 1u);
+  EXPECT_EQ(legs[0].id(), h.commits[2].id());
+  EXPECT_EQ(h.last().state, State::flying);
+}
+
 TEST(Replanning, IfNothingComesTheVehicleRestsBeforeTheUnseenAndPlansAgainFromThere) {
   Harness h = approaching();
   h.pass(9.5);

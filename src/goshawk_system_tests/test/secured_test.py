@@ -147,8 +147,9 @@ class SecuredFlight(StackTest):
             with self.subTest(stage):
                 os.kill(self.stack.launch.pids()[stage], signal.SIGKILL)
                 log = self.stack.launch.logs / f"{stage}.log"
-                again = until(lambda f=log: f.read_text(errors="replace").count("ready: ") > 1, 30.0)
-                self.assertTrue(again, self.stack.launch.tails())
+                ready = until(
+                    lambda f=log: f.read_text(errors="replace").count("ready: ") > 1, 30.0)
+                self.assertTrue(ready, self.stack.launch.tails())
                 self.assertTrue(self.arrives(place), self.stack.launch.tails())
 
     def test_7_a_stage_that_was_silent_for_longer_than_its_lease_is_heard_again(self):

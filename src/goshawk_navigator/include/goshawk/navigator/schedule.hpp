@@ -35,6 +35,9 @@ class Schedule {
   /// The tracker did not take it: neither it nor what follows on it is flown, nor what it follows
   /// on if that was never answered: the tracker answers in order, so it has not heard that.
   void drop_refused(std::uint64_t id);
+  /// The tracker did not take a leg that another one of the same nominal part stands for: that one
+  /// alone is dropped. @return whether there is such a one
+  bool drop_later_stop(std::uint64_t id);
   /// Nothing of it is flown any more.
   void clear() { legs_.clear(); }
   /// Forgets legs that another has replaced by now. What continues a leg replaces it once it is
