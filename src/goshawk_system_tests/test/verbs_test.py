@@ -8,7 +8,7 @@ from calls_case import DONE, NOT_DONE, WRONG_CALL, CallsCase
 
 ALL_VERBS = ["plan", "fly", "check", "world", "campaign", "launch", "view", "run", "bench plan",
              "bench search", "bench scenario", "bench stage", "bench dds", "bench corridor",
-             "bench trajectory", "bench updates", "bench tracking", "bench map", "bench sensors",
+             "bench trajectory", "bench replan", "bench updates", "bench tracking", "bench map", "bench sensors",
              "conform", "record", "replay",
              "map info", "map save", "map crop", "map merge", "map diff", "sense check",
              "topic list", "topic info", "topic echo", "topic hz", "topic delay", "topic bw", "topic pub",
