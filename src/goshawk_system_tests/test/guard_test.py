@@ -45,7 +45,7 @@ class GuardCase(SystemTest):
         self.tracking = self.echo("tracking_state")
         self.launch = Launch(self.sandbox, file, "-p", f"map_server:map_file:={world}", *arguments)
         ready = until(lambda: {node_of(r) for r in self.reports.lines()} >= set(self.stages) and
-                      self.tracking.lines(), 60.0)
+                      self.tracking.lines() and self.odom.lines(), 60.0)
         self.assertTrue(ready, self.launch.tails())
         self.commits = Publisher(self.sandbox, "committed_trajectory",
                                  "goshawk_msgs/msg/CommittedTrajectory")
