@@ -60,7 +60,7 @@ class FaultCampaign(SystemTest):
         self.assertIn("--launch flight", outcome.err)
 
 
-class SlurmCampaign(SystemTest):
+class SlurmTest(SystemTest):
     """With a Slurm of this test's own: slurmctld, two slurmd and munged on loopback."""
 
     WORDS = ("campaign", "--missions", "4", "--goals", "1", "--seed", "2", "--wind", "0", "--json")
@@ -73,6 +73,8 @@ class SlurmCampaign(SystemTest):
         self.cluster = slurm_cluster.Cluster(self.sandbox.folder / "slurm", self.sandbox.env, 2)
         self.addCleanup(self.cluster.close)
 
+
+class SlurmCampaign(SlurmTest):
     def test_it_says_the_same_as_a_local_run_although_a_node_is_lost(self):
         self.assertTrue(until(lambda: len(self.cluster.nodes("idle")) == 2, 30.0),
                         self.cluster.tails())
@@ -91,6 +93,8 @@ class SlurmCampaign(SystemTest):
         same = {"folder": "", "median_energy_j": 0.0}
         self.assertEqual({**local, **same}, {**gathered, **same})
 
+
+class SlurmInterrupted(SlurmTest):
     def test_an_interrupted_campaign_cancels_its_job_and_continues(self):
         campaign = self.sandbox.start(GOSHAWK, *self.WORDS, "--engine", "slurm", "--output", "far",
                                       env=self.cluster.env)
