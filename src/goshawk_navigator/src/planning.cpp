@@ -197,8 +197,7 @@ void Navigator::try_other_start(const Error& reason, std::int64_t now_ns) {
 void Navigator::plan_again(const Error& reason, double delay_s, std::int64_t now_ns) {
   drop_open();
   if (++pursuit_.failures >= config_.max_attempts) {
-    const bool unseen = reason.code == ErrorCode::trajectory_blocked && space_.asks_for_known();
-    if (unseen) wait_for_other_map(now_ns, now_ns);
+    if (depends_on_map(reason.code)) wait_for_other_map(now_ns, now_ns);
     return give_up(
         {reason.code, fmt::format("{} (after {} attempts)", reason.message, pursuit_.failures)},
         now_ns);

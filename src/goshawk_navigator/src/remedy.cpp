@@ -33,4 +33,18 @@ Remedy remedy_of(ErrorCode code, bool from_motion) {
   }
 }
 
+bool depends_on_map(ErrorCode code) {
+  using enum ErrorCode;
+  switch (code) {
+    case start_occupied:
+    case start_unknown:
+    case segment_blocked:
+    case corridor_disjoint:
+    case trajectory_blocked:
+      return true;
+    default:
+      return false;
+  }
+}
+
 }  // namespace goshawk::navigator

@@ -73,6 +73,27 @@ TEST(Map, ThatBlocksEverythingForAMomentEndsNoGoal) {
   EXPECT_EQ(h.navigator.state(), State::arrived);
 }
 
+TEST(Map, ThatBlocksTheStartForAWhileEndsNoGoal) {
+  Harness h;
+  h.map(map_with_wall(2.0, 6));
+  h.pass(3.0);
+  h.goal(kGoal);
+  for (int k = 0; k < 100 && h.last().state == State::planning; ++k) {
+    h.fails(ErrorCode::start_occupied, StageRole::path_search, "the vehicle is inside the wall");
+    h.pass(0.3);
+  }
+  ASSERT_EQ(h.last().state, State::failed);
+  EXPECT_EQ(h.last().reason.code, ErrorCode::start_occupied);
+  const std::size_t asked = h.plans.size();
+  h.map(free_map(7));
+  h.pass(0.3);
+  ASSERT_EQ(h.plans.size(), asked + 1);
+  h.map_version = 7;
+  h.answer();
+  h.pass(5.0);
+  EXPECT_EQ(h.navigator.state(), State::arrived);
+}
+
 TEST(Map, ThatChangesWhileThePlanIsMadeIsReasonEnoughToAskAgain) {
   Harness h;
   h.pass(3.0);

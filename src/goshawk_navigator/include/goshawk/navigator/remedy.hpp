@@ -15,4 +15,8 @@ enum class Remedy {
 /// @param from_motion the plan was to begin in flight
 Remedy remedy_of(ErrorCode code, bool from_motion);
 
+/// Whether a newer map may help after asking again has not: the vehicle rests beside what the map
+/// learnt late, or the map is of a server that has only just begun.
+bool depends_on_map(ErrorCode code);
+
 }  // namespace goshawk::navigator
