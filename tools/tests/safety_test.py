@@ -1,5 +1,6 @@
 """docs/safety.md: every row of its hazard table is shown by tests or campaigns that exist."""
 
+import itertools
 import pathlib
 import re
 import unittest
@@ -9,17 +10,16 @@ PAGE = ROOT / "docs/safety.md"
 COLUMNS = ["hazard", "noticed by, within", "the vehicle", "guaranteed", "shown by"]
 
 
+def cells_of(line):
+    return [cell.strip() for cell in line.strip("| ").split(" | ")]
+
+
 def rows(text):
     """Cells of the hazard table's rows."""
-    cells = [[cell.strip() for cell in line.strip("| ").split(" | ")]
-             for line in text.splitlines() if line.startswith("|")]
-    begin = cells.index(COLUMNS)
-    found = []
-    for row in cells[begin + 2:]:
-        if len(row) != len(COLUMNS):
-            break
-        found.append(row)
-    return found
+    lines = text.splitlines()
+    begin = next(k for k, line in enumerate(lines) if cells_of(line) == COLUMNS)
+    table = itertools.takewhile(lambda line: line.startswith("|"), lines[begin + 2:])
+    return [cells_of(line) for line in table]
 
 
 def known_names():
@@ -55,7 +55,8 @@ class SafetyPage(unittest.TestCase):
         self.assertNotIn("Upsets.NoSuchTest", known_names())
         self.assertIn("Upsets.OdometryThatPausesStopsTheVehicleWhereItIs", known_names())
         self.assertEqual(rows("| hazard | noticed by, within | the vehicle | guaranteed | shown by |\n"
-                              "| --- | --- | --- | --- | --- |\n| a | b | c | d | `e` |\n"),
+                              "| --- | --- | --- | --- | --- |\n| a | b | c | d | `e` |\n\n"
+                              "| another | table | is | not | read |\n"),
                          [["a", "b", "c", "d", "`e`"]])
 
 
