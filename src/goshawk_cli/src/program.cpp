@@ -5,6 +5,9 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
+#include <optional>
+#include <string_view>
 
 #include "goshawk/runtime/node.hpp"
 #include "goshawk/runtime/parameters.hpp"
@@ -72,12 +75,29 @@ std::string about_stray(const std::string& word, const CLI::App& app) {
   const std::string more = fmt::format(" ({} --help lists them)", call_of(app));
   if (is_option(word)) {
     const std::string name = word.substr(0, word.find('='));
-    return fmt::format("there is no option {}{}{}", name,
-                       did_you_mean(name, options_of(app)), more);
+    return fmt::format("there is no option {}{}{}", name, did_you_mean(name, options_of(app)),
+                       more);
   }
   const Words verbs = words_below(app);
   if (verbs.empty()) return fmt::format("'{}' is one word too many", word);
   return fmt::format("there is no verb '{}'{}{}", word, did_you_mean(word, verbs), more);
+}
+
+/// "--wind: Value 99 not in range 0.000000 to 15.000000" with sensible digits.
+std::optional<std::string> about_range(const std::string& text) {
+  constexpr std::string_view kValue = ": Value ", kRange = " not in range ", kTo = " to ";
+  const auto value = text.find(kValue), range = text.find(kRange), to = text.find(kTo, range);
+  if (to == std::string::npos || value == std::string::npos) return {};
+  const std::string name = text.substr(0, value);
+  const auto value_at = value + kValue.size();
+  const std::string given = text.substr(value_at, range - value_at);
+  char* end = nullptr;
+  std::strtod(given.c_str(), &end);
+  if (given.empty() || *end != '\0') return fmt::format("{}: '{}' is not a number", name, given);
+  const char* least = text.c_str() + range + kRange.size();
+  return fmt::format("{}: {} is not from {:.10g} to {:.10g}", name, given,
+                     std::strtod(least, nullptr),
+                     std::strtod(text.c_str() + to + kTo.size(), nullptr));
 }
 
 /// CLI11's sentence, in our words if its own are hard to read.
@@ -90,6 +110,7 @@ std::string about(const CLI::ParseError& error, const CLI::App& app) {
                        text.substr(conversion.size(), equals - conversion.size()),
                        text.substr(equals + 3));
   }
+  if (const auto range = about_range(text)) return *range;
   if (error.get_name() == "RequiredError" && !words_below(app).empty()) {
     return fmt::format("a verb is missing: {} {}", call_of(app),
                        fmt::join(words_below(app), " | "));
@@ -235,9 +256,8 @@ Program::Place Program::place_of(const Words& words) const {
     if (place.pending != nullptr && !is_option(word)) {
       if (!many) place.pending = nullptr;
     } else if (is_option(word)) {
-      const auto* option = word.find('=') == std::string::npos
-                               ? place.app->get_option_no_throw(word)
-                               : nullptr;
+      const auto* option =
+          word.find('=') == std::string::npos ? place.app->get_option_no_throw(word) : nullptr;
       const int most = option == nullptr ? 0 : option->get_items_expected_max();
       place.pending = most > 0 ? option : nullptr;
       many = most > 1;

@@ -21,7 +21,7 @@ class ProgramTest : public testing::Test {
   ProgramTest() {
     const Verb fly = program_.verb("fly", "fly somewhere");
     add_points(fly, "--goal", goals_, "[m]");
-    fly->add_option("--speed", speed_, "[m/s]");
+    fly->add_option("--speed", speed_, "[m/s]")->check(CLI::Range(0.1, 20.0));
     fly.choice("--weather", weather_, "what blows", {"calm", "wind"});
     fly.runs([this](const Console&) { return ran("fly"); });
 
@@ -82,6 +82,7 @@ TEST_F(ProgramTest, NamesTheNearestVerbAndOption) {
         {{"topic", "echo"}, "topic is required"},
         {{"topic", "echo", "a", "b"}, "'b' is one word too many"},
         {{"fly", "--speed", "fast"}, "--speed: 'fast' is not a number"},
+        {{"fly", "--speed", "99"}, "--speed: 99 is not from 0.1 to 20"},
         {{"fly", "--speed"}, "--speed"},
         {{"fly", "--weather", "wnid"}, "not one of calm, wind; did you mean wind?"},
         {{"fly", "--goal", "1,2"}, "'1,2' is not a point"}}) {

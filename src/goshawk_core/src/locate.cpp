@@ -62,9 +62,8 @@ std::string direction(Index3 from, Index3 to) {
 std::string unknown_nearby(const VoxelGrid& grid) {
   return fmt::format(
       "is closer than {:.3g} m to unknown space, which counts as an obstacle: choose a point "
-      "farther "
-      "inside what was measured, or let unknown space not grow (unknown: blocked) or be free "
-      "(unknown: free)",
+      "farther inside what was measured, or let unknown space not grow (unknown: blocked) or be "
+      "free (unknown: free)",
       grid.inflation_m);
 }
 
@@ -79,8 +78,7 @@ std::string why_blocked(const VoxelGrid& grid, Index3 at) {
   if (obstacle.found()) {
     return fmt::format(
         "is closer than {:.3g} m to the obstacle at {}, {}: choose a point with more clearance, or "
-        "a "
-        "smaller radius or margin",
+        "a smaller radius or margin",
         grid.inflation_m, to_text(grid.geometry.center(obstacle.voxel)),
         direction(at, obstacle.voxel));
   }

@@ -31,7 +31,7 @@ std::string left_out(const MapSource& source) {
 
 }  // namespace
 
-std::string summarise(const MapSource& source, const RawVoxels& raw) {
+std::string summarise(const RawVoxels& raw) {
   const GridGeometry& g = raw.geometry;
   const std::int64_t occupied = raw.occupied.count(), known = raw.known.count();
   const auto percent = [&](std::int64_t count) {
@@ -39,11 +39,15 @@ std::string summarise(const MapSource& source, const RawVoxels& raw) {
   };
   const Vec3 span = g.upper_corner_map() - g.origin_map;
   return fmt::format(
-      "{}{}: {:.6g} x {:.6g} x {:.6g} m from {} to {}, {:.1f} % occupied, {:.1f} % free, {:.1f} % "
+      "{:.6g} x {:.6g} x {:.6g} m from {} to {}, {:.1f} % occupied, {:.1f} % free, {:.1f} % "
       "unknown",
-      entries(source, occupied), left_out(source), span.x(), span.y(), span.z(),
-      to_text(g.origin_map), to_text(g.upper_corner_map()), percent(occupied),
-      percent(known - occupied), percent(raw.occupied.voxels() - known));
+      span.x(), span.y(), span.z(), to_text(g.origin_map), to_text(g.upper_corner_map()),
+      percent(occupied), percent(known - occupied), percent(raw.occupied.voxels() - known));
+}
+
+std::string summarise(const MapSource& source, const RawVoxels& raw) {
+  return fmt::format("{}{}: {}", entries(source, raw.occupied.count()), left_out(source),
+                     summarise(raw));
 }
 
 }  // namespace goshawk::map_server

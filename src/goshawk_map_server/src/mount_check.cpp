@@ -9,7 +9,8 @@
 namespace goshawk::map_server {
 namespace {
 
-constexpr std::size_t kMostClouds = 30, kMostPoints = 800;  // of a cloud
+constexpr std::size_t kMostClouds = 30, kMostPoints = 800;          // of a cloud
+constexpr double kBodyReach_m = SensorCheckOptions{}.body_reach_m;  // nearer points may turn along
 constexpr double kLeastTurn_rad = 0.5;
 constexpr double kFirstStep_rad = 0.04, kLastStep_rad = 0.0025;
 constexpr double kSuspicious_rad = 0.01, kSuspiciousShare = 0.03;
@@ -36,7 +37,7 @@ std::vector<PlacedPart> placed_parts(const std::vector<RecordedCloud>& clouds,
     PlacedPart part{{}, *base};
     const std::size_t stride = std::max<std::size_t>(1, cloud.points.size() / kMostPoints);
     for (std::size_t k = 0; k < cloud.points.size(); k += stride) {
-      if (cloud.points[k].norm() > 0.7) part.points.push_back(cloud.points[k]);
+      if (cloud.points[k].norm() > kBodyReach_m) part.points.push_back(cloud.points[k]);
     }
     parts.push_back(std::move(part));
   }

@@ -174,10 +174,7 @@ void Navigator::pursue_again(const Error& why, std::int64_t now_ns) {
   if (state_ == State::failed || state_ == State::idle) return say_what_is_flown(now_ns);
   drop_open();
   if (++pursuit_.failures >= config_.max_attempts) return give_up(why, now_ns);
-  pursuit_.open = true;
-  pursuit_.starts = 0;
-  pursuit_.not_before_ns = 0;
-  pursuit_.wait_begin_ns = now_ns;
+  reopen(0, now_ns);
   pursuit_.retry_ns = now_ns + to_ns(kRetryDelay_s);
   enter(schedule_.moves(now_ns) ? State::flying : State::planning, now_ns,
         {why.code, why.message + "; planning again"});
@@ -225,10 +222,7 @@ void Navigator::blocked(const Error& why, std::int64_t now_ns) {
   const bool brakes_now = brake(now_ns);
   if (state_ == State::failed || (brakes() && !brakes_now)) return;
   drop_open();
-  pursuit_.open = true;
-  pursuit_.starts = 0;
-  pursuit_.not_before_ns = brakes_now ? schedule_.last()->start_ns() : 0;
-  pursuit_.wait_begin_ns = now_ns;
+  reopen(brakes_now ? schedule_.last()->start_ns() : 0, now_ns);
   enter(State::flying, now_ns, {why.code, why.message + "; planning again"});
   plan(now_ns);
 }

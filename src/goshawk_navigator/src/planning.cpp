@@ -206,6 +206,14 @@ void Navigator::plan_again(const Error& reason, double delay_s, std::int64_t now
   plan(now_ns);
 }
 
+// What was committed does not lead to the goal: it is planned for again.
+void Navigator::reopen(std::int64_t not_before_ns, std::int64_t now_ns) {
+  pursuit_.open = true;
+  pursuit_.starts = 0;
+  pursuit_.not_before_ns = not_before_ns;
+  pursuit_.wait_begin_ns = now_ns;
+}
+
 void Navigator::give_up(const Error& reason, std::int64_t now_ns) {
   drop_open();
   pursuit_.open = false;

@@ -152,11 +152,8 @@ bool Navigator::is_better(const CommittedTrajectory& other, std::int64_t now_ns)
 // The stop part was flown to its end.
 void Navigator::rest_before_goal(std::int64_t now_ns) {
   drop_open();
-  pursuit_.open = true;
-  pursuit_.starts = 0;
-  pursuit_.not_before_ns = 0;
+  reopen(0, now_ns);
   pursuit_.retry_ns = now_ns;
-  pursuit_.wait_begin_ns = now_ns;
   plan(now_ns);
 }
 

@@ -1,10 +1,10 @@
 #include "folder.hpp"
 
 #include <fmt/format.h>
+#include <yaml-cpp/yaml.h>
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 
 namespace goshawk::recording {
 namespace {
@@ -15,25 +15,20 @@ Error unfit(std::string sentence) {
   return fail(ErrorCode::invalid_input, std::move(sentence));
 }
 
-std::string trimmed(std::string text) {
-  constexpr const char* kAround = " \t\r'\"";
-  text.erase(0, std::min(text.find_first_not_of(kAround), text.size()));
-  text.erase(text.find_last_not_of(kAround) + 1);
-  return text;
-}
-
-// The list `relative_file_paths` of rosbag2's metadata.yaml, as rosbag2 writes it: a name a line.
-std::vector<std::string> listed_files(const fs::path& metadata) {
-  std::vector<std::string> names;
-  std::ifstream file(metadata);
-  bool inside = false;
-  for (std::string line; std::getline(file, line);) {
-    const std::string text = trimmed(line);
-    if (inside && !text.starts_with("- ")) break;
-    if (inside) names.push_back(trimmed(text.substr(2)));
-    inside = inside || text == "relative_file_paths:";
+// The files that rosbag2's metadata.yaml lists. @return none without such a file; invalid_input if
+// it is damaged
+Result<std::vector<std::string>> listed_files(const fs::path& metadata) {
+  std::error_code ignored;
+  if (!fs::exists(metadata, ignored)) return std::vector<std::string>();
+  try {
+    const YAML::Node root = YAML::LoadFile(metadata.string());
+    const YAML::Node bag = root["rosbag2_bagfile_information"];
+    if (!bag) return std::vector<std::string>();  // of another program
+    return bag["relative_file_paths"].as<std::vector<std::string>>();
+  } catch (const YAML::Exception& fault) {
+    return unfit(fmt::format("{} does not list the bag's files in relative_file_paths: {}",
+                             metadata.string(), fault.what()));
   }
-  return names;
 }
 
 std::vector<std::string> names_in(const fs::path& folder, const std::string& ending) {
@@ -88,9 +83,9 @@ Result<Files> recording_files(const std::string& path) {
   std::error_code ignored;
   if (!fs::is_directory(path, ignored)) return Files{{path}, {}};
   const fs::path folder(path);
-  if (const auto listed = listed_files(folder / "metadata.yaml"); !listed.empty()) {
-    return files_of_bag(folder, listed);
-  }
+  const auto listed = listed_files(folder / "metadata.yaml");
+  if (!listed) return listed.error();
+  if (!listed->empty()) return files_of_bag(folder, *listed);
   const auto found = names_in(folder, ".mcap");
   if (found.size() == 1) return Files{{(folder / found[0]).string()}, {}};
   if (found.empty()) {

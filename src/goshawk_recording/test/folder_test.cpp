@@ -96,6 +96,21 @@ TEST(Bag, ItsFilesAreOneRecordingWhateverTheyCallTheirChannels) {
   }
 }
 
+TEST(Bag, ItsFilesMayBeListedInOneLineAndMetadataOfOthersIsLeftAlone) {
+  const Folder folder;
+  folder.record("a_0.mcap", {{"/a", 1}});
+  folder.record("a_1.mcap", {{"/a", 2}});
+  folder.write("metadata.yaml",
+               "rosbag2_bagfile_information: {relative_file_paths: [a_0.mcap, 'a_1.mcap']}\n");
+  auto reader = Reader::open(folder.path());
+  ASSERT_TRUE(reader) << reader.error().message;
+  EXPECT_THAT(told(*reader), ElementsAre("/a 1", "/a 2"));
+  const Folder other;
+  other.record("flight.mcap", {{"/a", 4}});
+  other.write("metadata.yaml", "author: somebody\n");
+  EXPECT_TRUE(Reader::open(other.path()));
+}
+
 TEST(Bag, AFileThatIsMissingIsNamedAndTheOthersAreRead) {
   const Folder folder;
   folder.record("a_1.mcap", {{"/a", 4}});
@@ -124,15 +139,22 @@ TEST(Bag, WhatIsNoRecordingIsRefusedForTheTrueReason) {
   EXPECT_THAT(why(empty), HasSubstr("without a recording"));
   sqlite.write("bag_0.db3", "SQLite format 3");
   EXPECT_THAT(why(sqlite), AllOf(HasSubstr("SQLite"), HasSubstr("ros2 bag convert")));
-  sqlite.write("metadata.yaml", "x:\n  relative_file_paths:\n    - bag_0.db3\n");
+  sqlite.write("metadata.yaml",
+               "rosbag2_bagfile_information:\n  relative_file_paths:\n    - bag_0.db3\n");
   EXPECT_THAT(why(sqlite), HasSubstr("SQLite"));
   two.record("a.mcap", {{"/a", 1}});
   two.record("b.mcap", {{"/a", 2}});
   EXPECT_THAT(why(two), AllOf(HasSubstr("2 recordings"), HasSubstr("a.mcap")));
-  packed.write("metadata.yaml", "x:\n  relative_file_paths:\n    - a_0.mcap.zstd\n");
+  packed.write("metadata.yaml",
+               "rosbag2_bagfile_information:\n  relative_file_paths:\n    - a_0.mcap.zstd\n");
   EXPECT_THAT(why(packed), HasSubstr("a_0.mcap.zstd"));
   gone.write("metadata.yaml", kMetadata);
   EXPECT_THAT(why(gone), HasSubstr("none of the files"));
+  for (const auto* damaged : {"rosbag2_bagfile_information: [", "a: b: c",
+                              "rosbag2_bagfile_information:\n  duration: 7\n"}) {
+    gone.write("metadata.yaml", damaged);
+    EXPECT_THAT(why(gone), HasSubstr("metadata.yaml does not list the bag's files")) << damaged;
+  }
 }
 
 TEST(SharedCase, TheRecordingWithChunksOfLz4IsRead) {

@@ -9,6 +9,7 @@
 #include "goshawk/conversions/geometry.hpp"
 #include "goshawk/conversions/status.hpp"
 #include "goshawk/conversions/vehicle.hpp"
+#include "goshawk/core/vehicle.hpp"
 
 namespace goshawk::cli {
 namespace {
@@ -24,11 +25,6 @@ std::string topic_in(const std::string& space, const char* name) {
 
 double seconds_since(Steady::time_point begin) {
   return std::chrono::duration<double>(Steady::now() - begin).count();
-}
-
-double yaw_of(const Quaternion& q) {
-  return std::atan2(2.0 * (q.w() * q.z() + q.x() * q.y()),
-                    1.0 - 2.0 * (q.y() * q.y() + q.z() * q.z()));
 }
 
 }  // namespace
@@ -71,7 +67,8 @@ Status Pilot::wait_ready(double timeout_s) {
                             "not known",
                             domain, timeout_s));
   }
-  session_.wait_for(0.5, [] { return false; });  // what the navigator said before comes in this time
+  session_.wait_for(0.5,
+                    [] { return false; });  // what the navigator said before comes in this time
   return success();
 }
 

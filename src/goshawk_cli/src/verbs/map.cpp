@@ -2,6 +2,7 @@
 
 #include "goshawk/introspection/topic_reader.hpp"
 #include "goshawk/map_server/map_file.hpp"
+#include "goshawk/map_server/map_summary.hpp"
 #include "goshawk/map_server/map_tools.hpp"
 #include "goshawk/map_server/octree.hpp"
 #include "goshawk/runtime/message_type.hpp"
@@ -17,15 +18,24 @@ using map_server::RawVoxels;
 
 constexpr std::int64_t kMostVoxels = map_server::VoxelizeOptions{}.max_voxels;
 
+/// A map file's voxels, and a sentence about what was read.
+struct ReadMap {
+  RawVoxels voxels;
+  std::string summary;
+};
+
 /// How files are read that do not say it themselves.
 struct Reading {
   map_server::LoadOptions load;
 
-  Result<RawVoxels> read(const std::string& path, const Console& console) const {
+  Result<ReadMap> read(const std::string& path, const Console& console) const {
     const auto source = map_server::load_map(path, load);
     if (!source) return source.error();
     for (const std::string& note : source->notes) console.say(path + ": " + note);
-    return map_server::voxelize(*source, {.box = load.box});
+    auto voxels = map_server::voxelize(*source, {.box = load.box});
+    if (!voxels) return voxels.error();
+    std::string summary = map_server::summarise(*source, *voxels);
+    return ReadMap{*std::move(voxels), std::move(summary)};
   }
 };
 
@@ -47,24 +57,17 @@ Json describe(const RawVoxels& map) {
           {"unknown_voxels", g.size.x * std::int64_t{g.size.y} * g.size.z - known}};
 }
 
-std::string sentence(const RawVoxels& map) {
-  const GridGeometry& g = map.geometry;
-  const std::int64_t known = map.known.count(), occupied = map.occupied.count();
-  return fmt::format("{} voxels of {:g} m from {} to {} m: {} occupied, {} free, {} unknown",
-                     to_text(g.size), g.resolution_m, to_text(g.origin_map),
-                     to_text(g.upper_corner_map()), occupied, known - occupied,
-                     map.known.voxels() - known);
-}
-
-/// What every verb that tells of a map ends with. @param file that was read or written
-int tell(const std::string& file, const RawVoxels& map, const Console& console) {
+/// What every verb that tells of a map ends with.
+/// @param file that was read or written @param summary of the map
+int tell(const std::string& file, const RawVoxels& map, const std::string& summary,
+         const Console& console) {
   if (console.json()) {
     Json object = ok_json();
     object["file"] = file;
     object.update(describe(map));
     console.print(object);
   } else {
-    fmt::print("{}: {}\n", file, sentence(map));
+    fmt::print("{}: {}\n", file, summary);
   }
   return kDone;
 }
@@ -74,7 +77,7 @@ int write(const RawVoxels& map, const std::string& output, const Console& consol
   if (!cut) return console.failed(cut.error());
   const auto saved = map_server::save_voxels(cut->geometry, cut->occupied, cut->known, output);
   if (!saved) return console.not_done(saved.error());
-  return tell(output, *cut, console);
+  return tell(output, *cut, map_server::summarise(*cut), console);
 }
 
 CLI::Option* add_output(const Verb& verb, std::string& output) {
@@ -93,7 +96,8 @@ void add_info(const Verb& map) {
   verb->footer("Example:\n  goshawk map info office.bt");
   verb.runs([o](const Console& console) {
     const auto read = o->reading.read(o->file, console);
-    return read ? tell(o->file, *read, console) : console.failed(read.error());
+    return read ? tell(o->file, read->voxels, read->summary, console)
+                : console.failed(read.error());
   });
 }
 
@@ -114,7 +118,7 @@ void add_crop(const Verb& map) {
   verb.runs([o](const Console& console) {
     o->reading.load.box = map_server::Box{o->lower_m, o->upper_m};
     const auto read = o->reading.read(o->file, console);
-    return read ? write(*read, o->output, console) : console.failed(read.error());
+    return read ? write(read->voxels, o->output, console) : console.failed(read.error());
   });
 }
 
@@ -123,8 +127,8 @@ Result<std::vector<RawVoxels>> read_all(const Words& files, const Reading& readi
   std::vector<RawVoxels> maps;
   for (const std::string& file : files) {
     auto read = reading.read(file, console);
-    if (!read) return fail(read.code(), file + ": " + read.error().message);
-    maps.push_back(*std::move(read));
+    if (!read) return read.error();
+    maps.push_back(std::move(read->voxels));
   }
   return maps;
 }

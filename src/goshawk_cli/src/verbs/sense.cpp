@@ -253,19 +253,19 @@ void add_sense_check(const Verb& sense) {
   verb->add_option("recording", o->recording, "RECORDING.mcap")->required();
   verb->add_option("--topic", o->topic, "of the clouds (default: the only one)");
   verb->add_option("--seconds", o->seconds, "[s] of the recording that are read")
+      ->check(CLI::Range(0.1, kKept_s))
       ->capture_default_str();
   verb->add_option("--resolution", o->check.resolution_m, "[m] voxel edge of the map")
+      ->check(CLI::Range(1e-3, 100.0))
       ->capture_default_str();
   verb->add_option("--a-max", o->check.a_max_m_s2, "[m/s^2] with which the vehicle stops")
+      ->check(CLI::Range(1e-3, 1e3))
       ->capture_default_str();
   verb->add_option("--margin", o->check.margin_m, "[m] kept from what it stops before")
+      ->check(CLI::Range(0.0, 1e3))
       ->capture_default_str();
   verb->footer("Example:\n  goshawk sense check flight.mcap --topic points");
   verb.runs([o](const Console& console) {
-    if (!(o->check.resolution_m > 0.0 && o->check.a_max_m_s2 > 0.0 && o->seconds > 0.0)) {
-      return console.wrong_call(
-          {ErrorCode::invalid_parameter, "--resolution, --a-max and --seconds must be above zero"});
-    }
     const auto recorded = read(*o);
     if (!recorded) return console.failed(recorded.error());
     const auto judged = judge(*recorded, *o);

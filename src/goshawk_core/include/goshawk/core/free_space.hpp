@@ -11,7 +11,8 @@ namespace goshawk {
 
 /// The space that a map lets the vehicle's centre fly through. If the map leaves unknown space free
 /// (for planning), a voxel is free here only if the whole body was seen free there: it is not
-/// grown, and every voxel within the inflation is known. If the map counts unknown space as
+/// grown, and every voxel of the map within the inflation is known. The body may stick out of the
+/// map's faces, which do not grow (docs/adr/0005). If the map counts unknown space as
 /// occupied, its grown bits say all, and if unknown space may be flown through, they alone decide.
 ///
 /// The body is looked at only where it is asked for: nothing is grown for the whole map.

@@ -21,7 +21,7 @@ class FieldPath {
   static Result<FieldPath> parse(const Type& type, std::string_view text);
 
   /// @param message of that type, as cdr_to_json() makes it
-  /// @return nullptr where a list is too short
+  /// @return nullptr if a list is too short
   const nlohmann::ordered_json* find(const nlohmann::ordered_json& message) const;
 
   /// The type of what it leads to; nullptr for values and lists.

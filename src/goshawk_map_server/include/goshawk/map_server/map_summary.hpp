@@ -11,5 +11,7 @@ namespace goshawk::map_server {
 /// One line.
 /// @param raw the voxels of `source`
 std::string summarise(const MapSource& source, const RawVoxels& raw);
+/// The same of a map that no file was read for: extent and shares.
+std::string summarise(const RawVoxels& raw);
 
 }  // namespace goshawk::map_server

@@ -10,7 +10,7 @@
 
 namespace goshawk::map_server {
 
-/// A cloud as it came.
+/// A cloud of a recording.
 struct RecordedCloud {
   SensorCloud cloud;             // finite points only, in the sensor's frame
   std::int64_t claimed = 0;      // points of the message, missing returns among them

@@ -180,6 +180,7 @@ class Navigator {
   void wait_for_other_map(std::int64_t asked_ns, std::int64_t now_ns);
   void try_other_start(const Error& reason, std::int64_t now_ns);
   void plan_again(const Error& reason, double delay_s, std::int64_t now_ns);
+  void reopen(std::int64_t not_before_ns, std::int64_t now_ns);
   void give_up(const Error& reason, std::int64_t now_ns);
   bool brake(std::int64_t now_ns);
   bool brakes() const { return schedule_.last() != nullptr && schedule_.last()->brakes; }
