@@ -39,6 +39,7 @@ class FaultCampaign(SystemTest):
         self.assertIn(f"mission {missions} ", outcome.err)
         self.assertEqual((summary["missions"], summary["flights"]), (missions, 2 * missions))
         self.assertEqual(summary["collisions"], 0, str(outcome))
+        self.assertLess(summary["not_judged"], missions, "nothing shows that nothing was touched")
         self.assertLessEqual(set(summary["faults"]), KINDS)
         for counts in summary["faults"].values():
             self.assertGreater(counts["injected"], 0)
