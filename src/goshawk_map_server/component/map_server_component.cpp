@@ -106,6 +106,9 @@ class MapServerComponent : public Component {
   }
 
  private:
+  // With a reserve, what is flown is judged by them (goshawk::FreeSpace).
+  bool sends_raw() const { return config_.publish_raw || config_.reserve_m > 0.0; }
+
   void publish_whole() {
     changed_ = false;
     const VoxelGrid grid = map_.grid();
@@ -115,7 +118,7 @@ class MapServerComponent : public Component {
 
   void publish_grid(VoxelGrid grid) {  // a copy shares its bits
     grid.version += beginning_.versions_before;
-    if (!config_.publish_raw) grid.raw = {};
+    if (!sends_raw()) grid.raw = {};
     msg::VoxelGrid m;
     m.header(conversions::make_header(node_.now_ns()));
     conversions::fill_msg(grid, m);
@@ -298,7 +301,7 @@ class MapServerComponent : public Component {
   }
 
   void publish_update(GridUpdate& update) {
-    if (!config_.publish_raw) {
+    if (!sends_raw()) {
       for (Brick& brick : update.bricks) brick.raw.reset();
     }
     msg::VoxelGridUpdate m;

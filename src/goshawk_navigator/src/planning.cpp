@@ -8,6 +8,7 @@
 #include "goshawk/core/free_curve.hpp"
 #include "goshawk/navigator/brake.hpp"
 #include "goshawk/navigator/navigator.hpp"
+#include "goshawk/navigator/way_out.hpp"
 #include "times.hpp"
 
 namespace goshawk::navigator {
@@ -15,6 +16,9 @@ namespace {
 
 // A plan that begins in flight must come this long before, so that the tracker has it.
 constexpr double kSwitchSlack_s = 0.02;
+
+// Of the time at which a plan may begin.
+constexpr double kSearchStep_s = 0.02;
 
 // No way to rest was found on what is flown: again after this time.
 constexpr double kBrakeAgain_s = 0.1;
@@ -46,7 +50,10 @@ void Navigator::plan(std::int64_t now_ns) {
   if (schedule_.moves(now_ns) && odometry_ns_) return ask(start_in_flight(now_ns), now_ns);
   // Odometry that was only just discovered, a trajectory that is just ending, a vehicle that brakes
   // by itself: all of these pass.
-  if (odometry_is_fresh(now_ns) && at_rest()) return ask(start_at_rest(now_ns), now_ns);
+  if (odometry_is_fresh(now_ns) && at_rest()) {
+    if (!leave_blocked_place(now_ns)) return ask(start_at_rest(now_ns), now_ns);
+    return ask(start_in_flight(now_ns), now_ns);
+  }
   if (now_ns - pursuit_.wait_begin_ns < to_ns(config_.settle_timeout_s)) return;
   give_up(fail(ErrorCode::tracking_lost,
                odometry_is_fresh(now_ns)
@@ -57,8 +64,45 @@ void Navigator::plan(std::int64_t now_ns) {
 }
 
 Navigator::Start Navigator::start_in_flight(std::int64_t now_ns) const {
-  return start_at(std::max({now_ns + to_ns(pursuit_.lead_s), pursuit_.not_before_ns,
-                            schedule_.legs().front().start_ns()}));
+  return start_at(
+      free_for_planning_from(std::max({now_ns + to_ns(pursuit_.lead_s), pursuit_.not_before_ns,
+                                       schedule_.legs().front().start_ns()})));
+}
+
+// What is flown may lead through voxels that the map learnt late: free for flying, but no plan may
+// begin there. @return the first moment from then on at which one may; if there is none, that one
+std::int64_t Navigator::free_for_planning_from(std::int64_t time_ns) const {
+  if (!space_.asks_for_known() || map()->raw.empty()) return time_ns;
+  const auto is_free = [this](std::int64_t at_ns) {
+    const auto voxel = map()->geometry.index_of(schedule_.at(at_ns)->at(at_ns).position);
+    return voxel && !map()->grown.get(*voxel);
+  };
+  for (std::int64_t at_ns = time_ns; at_ns < schedule_.end_ns(); at_ns += to_ns(kSearchStep_s)) {
+    if (is_free(at_ns)) return at_ns;
+  }
+  return is_free(schedule_.end_ns()) ? std::max(time_ns, schedule_.end_ns()) : time_ns;
+}
+
+// The vehicle rests where no plan may begin. @return whether it leaves by a way of its own: then
+// plans begin at the end of that
+bool Navigator::leave_blocked_place(std::int64_t now_ns) {
+  if (!space_.asks_for_known() || map()->raw.empty()) return false;
+  const Vec3 place_map = start_at_rest(now_ns).state.position;
+  const auto voxel = map()->geometry.index_of(place_map);
+  if (!voxel || !map()->grown.get(*voxel)) return false;
+  auto way = way_out(place_map, space_, config_.limits());
+  if (!way) return false;
+  auto committed =
+      CommittedTrajectory::make({.id = next_id_++,
+                                 .nominal = *std::move(way),
+                                 .start_time_ns = now_ns + to_ns(config_.commit_lead_s),
+                                 .map_version = map()->version,
+                                 .yaw_rad = yaw_of(vehicle_.q_map_base)});
+  if (!committed) return false;
+  orders_.push_back(Commit{*committed, 0});
+  schedule_.add({.committed = *std::move(committed), .brakes = true});
+  pursuit_.not_before_ns = schedule_.end_ns();
+  return true;
 }
 
 // On what will be flown then. @pre not before the first leg

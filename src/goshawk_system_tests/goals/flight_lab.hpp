@@ -52,6 +52,7 @@ class FlightLab {
   tracker::Tracker& tracker() { return tracker_; }
   const std::optional<CommittedTrajectory>& flown() const { return flown_; }  // newest accepted
   std::int64_t now_ns() const { return vehicle_.time_ns(); }
+  const RigidBodyState& vehicle() const { return vehicle_.state(); }
   const Vec3& position() const { return vehicle_.state().position_map; }
   const Vec3& velocity() const { return vehicle_.state().velocity_map; }
   double speed() const { return velocity().norm(); }

@@ -169,6 +169,8 @@ class Navigator {
 
   // planning.cpp
   void plan(std::int64_t now_ns);
+  bool leave_blocked_place(std::int64_t now_ns);
+  std::int64_t free_for_planning_from(std::int64_t time_ns) const;
   Start start_in_flight(std::int64_t now_ns) const;
   Start start_at(std::int64_t time_ns) const;
   Start start_at_rest(std::int64_t now_ns) const;
