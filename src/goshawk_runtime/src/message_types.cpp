@@ -65,5 +65,10 @@ GOSHAWK_MESSAGE(goshawk_msgs, VehicleStatus)
 GOSHAWK_MESSAGE(goshawk_msgs, Turn)
 GOSHAWK_MESSAGE(goshawk_msgs, ParameterRequest)
 GOSHAWK_MESSAGE(goshawk_msgs, ParameterAnswer)
+GOSHAWK_MESSAGE(goshawk_msgs, Goal)
+GOSHAWK_MESSAGE(goshawk_msgs, Mission)
+GOSHAWK_MESSAGE(goshawk_msgs, MissionState)
+GOSHAWK_MESSAGE(goshawk_msgs, OperatorCommand)
+GOSHAWK_MESSAGE(goshawk_msgs, OperatorAnswer)
 
 }  // namespace goshawk::runtime

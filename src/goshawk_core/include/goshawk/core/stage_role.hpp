@@ -18,7 +18,8 @@ enum class StageRole : std::uint8_t {
   tracker,
   vehicle,  // a simulator, or the bridge to an autopilot
   flight_check,
-  viewer
+  viewer,
+  mission
 };
 
 /// "path_search"
