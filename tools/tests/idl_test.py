@@ -74,6 +74,7 @@ class OwnMessages(unittest.TestCase):
         self.assertLessEqual({("StageReport", "stage"), ("NavigatorState", "state"),
                               ("TrackingState", "mode"), ("ParameterRequest", "verb"),
                               ("ParameterAnswer", "verb"), ("VehicleStatus", "control"),
+                              ("MissionState", "state"), ("OperatorCommand", "verb"),
                               ("GuardVerdict", "kind"), ("GuardVerdict", "verdict")}, named)
 
 

@@ -18,8 +18,9 @@ static_assert(std::uint8_t(StageRole::navigator) == stage::STAGE_NAVIGATOR);
 static_assert(std::uint8_t(StageRole::tracker) == stage::STAGE_TRACKER);
 static_assert(std::uint8_t(StageRole::vehicle) == stage::STAGE_VEHICLE);
 static_assert(std::uint8_t(StageRole::flight_check) == stage::STAGE_FLIGHT_CHECK);
-static_assert(std::uint8_t(StageRole::viewer) == stage::STAGE_VIEWER);
-static_assert(std::uint8_t(StageRole::guard) == stage::STAGE_GUARD);
+static_assert(std::uint8_t(StageRole::viewer) == stage::STAGE_VIEWER &&
+              std::uint8_t(StageRole::mission) == stage::STAGE_MISSION &&
+              std::uint8_t(StageRole::guard) == stage::STAGE_GUARD);
 
 }  // namespace
 
@@ -50,6 +51,8 @@ std::string_view navigator_state_word(std::uint8_t value) {
       return "arrived";
     case state::STATE_FAILED:
       return "failed";
+    case state::STATE_HELD:
+      return "held";
     default:
       return "unknown";
   }

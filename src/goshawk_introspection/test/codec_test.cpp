@@ -62,11 +62,14 @@ using Messages = testing::Types<
     tf2_msgs::msg::TFMessage, goshawk_msgs::msg::VoxelGrid, goshawk_msgs::msg::VoxelGridUpdate,
     goshawk_msgs::msg::PlanRequest, goshawk_msgs::msg::Path, goshawk_msgs::msg::Corridor,
     goshawk_msgs::msg::BezierTrajectory, goshawk_msgs::msg::CommittedTrajectory,
-    trajectory_msgs::msg::MultiDOFJointTrajectory, goshawk_msgs::msg::PolynomialPlan,
-    goshawk_msgs::msg::BsplinePlan, goshawk_msgs::msg::GuardVerdict,
-    goshawk_msgs::msg::AttitudeSetpoint, goshawk_msgs::msg::StageReport,
-    goshawk_msgs::msg::NavigatorState, goshawk_msgs::msg::TrackingState,
-    goshawk_msgs::msg::ParameterAnswer, goshawk_msgs::msg::VehicleStatus>;
+    goshawk_msgs::msg::AttitudeSetpoint, goshawk_msgs::msg::FallbackStop,
+    goshawk_msgs::msg::StageReport, goshawk_msgs::msg::NavigatorState,
+    goshawk_msgs::msg::TrackingState, goshawk_msgs::msg::ParameterAnswer,
+    goshawk_msgs::msg::VehicleStatus, goshawk_msgs::msg::Goal, goshawk_msgs::msg::Mission,
+    goshawk_msgs::msg::MissionState, goshawk_msgs::msg::OperatorCommand,
+    goshawk_msgs::msg::OperatorAnswer, trajectory_msgs::msg::MultiDOFJointTrajectory,
+    goshawk_msgs::msg::PolynomialPlan, goshawk_msgs::msg::BsplinePlan,
+    goshawk_msgs::msg::GuardVerdict>;
 TYPED_TEST_SUITE(EveryMessage, Messages);
 
 TYPED_TEST(EveryMessage, IsByteForByteWhatTheGeneratedCodeWrites) {

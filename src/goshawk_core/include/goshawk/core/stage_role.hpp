@@ -19,6 +19,7 @@ enum class StageRole : std::uint8_t {
   vehicle,  // a simulator, or the bridge to an autopilot
   flight_check,
   viewer,
+  mission,
   guard
 };
 
