@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -46,6 +47,14 @@ void Node::Impl::set_time(std::int64_t now_ns) {
   time.now_ns = now_ns;
 }
 
+void Node::Impl::require_one_port(const char* call) const {
+  if (!has_own_ports) return;
+  throw std::logic_error(
+      fmt::format("Node::{}() comes before subscriptions: a reader with a port of "
+                  "its own does not hear in the order of turns",
+                  call));
+}
+
 void Node::use_simulated_time() {
   if (impl_->time.on) return;
   impl_->time.on = true;
@@ -59,6 +68,7 @@ void Node::use_simulated_time() {
 void Node::run_in_lock_step() {
   auto& time = impl_->time;
   if (time.takes_turns) return;
+  impl_->require_one_port("run_in_lock_step");
   time.on = time.takes_turns = true;
   time.turns_done = advertise<Turn>(kDone, Qos::reliable_last(100));
   time.turns =
@@ -97,7 +107,9 @@ void Node::lead_lock_step(const LockStep& lock_step) {
   if (!(lock_step.step_s >= 1e-6 && lock_step.step_s <= 1.0) || !(lock_step.speed >= 0.0)) {
     throw std::invalid_argument("Node::lead_lock_step: a step of 1e-6 to 1 s, a speed above 0");
   }
+  impl_->require_one_port("lead_lock_step");
   auto& time = impl_->time;
+  time.leads = true;
   const std::string prefix = args_.node_namespace == "/" ? "" : args_.node_namespace;
   for (const auto& name : lock_step.followers) {
     time.followers.push_back(name.starts_with('/') ? name : prefix + "/" + name);
