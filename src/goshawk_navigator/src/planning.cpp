@@ -8,7 +8,6 @@
 #include "goshawk/core/brake.hpp"
 #include "goshawk/core/free_curve.hpp"
 #include "goshawk/navigator/navigator.hpp"
-#include "goshawk/navigator/way_out.hpp"
 #include "times.hpp"
 
 namespace goshawk::navigator {
@@ -81,28 +80,6 @@ std::int64_t Navigator::free_for_planning_from(std::int64_t time_ns) const {
     if (is_free(at_ns)) return at_ns;
   }
   return is_free(schedule_.end_ns()) ? std::max(time_ns, schedule_.end_ns()) : time_ns;
-}
-
-// The vehicle rests where no plan may begin. @return whether it leaves by a way of its own: then
-// plans begin at the end of that
-bool Navigator::leave_blocked_place(std::int64_t now_ns) {
-  if (!space_.asks_for_known() || map()->raw.empty()) return false;
-  const Vec3 place_map = start_at_rest(now_ns).state.position;
-  const auto voxel = map()->geometry.index_of(place_map);
-  if (!voxel || !map()->grown.get(*voxel)) return false;
-  auto way = way_out(place_map, space_, config_.limits());
-  if (!way) return false;
-  auto committed =
-      CommittedTrajectory::make({.id = next_id_++,
-                                 .nominal = *std::move(way),
-                                 .start_time_ns = now_ns + to_ns(config_.commit_lead_s),
-                                 .map_version = map()->version,
-                                 .yaw_rad = yaw_of(vehicle_.q_map_base)});
-  if (!committed) return false;
-  orders_.push_back(Commit{*committed, 0});
-  schedule_.add({.committed = *std::move(committed), .brakes = true});
-  pursuit_.not_before_ns = schedule_.end_ns();
-  return true;
 }
 
 // On what will be flown then. @pre not before the first leg

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <numbers>
 #include <stdexcept>
 
 #include "count_of.hpp"
@@ -29,6 +30,7 @@ struct Noisy {
   Vec3 shift_m = Vec3::Zero();
   double range_noise_m = 0.01;  // one sigma
   int seed = 1;
+  double view_rad = 2.0 * std::numbers::pi;  // of the sensor, around the vehicle's x axis
 };
 
 worlds::World shifted(const Noisy& noisy) {
@@ -51,6 +53,7 @@ LiveMapper mapper(const worlds::World& world, const Noisy& noisy) {
   lidar.pattern.columns = 240;
   lidar.pattern.elevation_lower_rad = -1.3;
   lidar.pattern.elevation_upper_rad = 1.3;
+  lidar.pattern.azimuth_width_rad = noisy.view_rad;
   lidar.returns.range_min_m = 0.3;
   lidar.returns.range_max_m = 8.0;
   lidar.returns.range_noise_m = noisy.range_noise_m;
@@ -75,7 +78,9 @@ struct NoisyFlight {
       : world(shifted(noisy)),
         live(mapper(world, noisy)),
         lab(live.map(), std::uint64_t(noisy.seed),
-            {.navigator = {.unknown = UnknownSpace::free}, .home_map = kFrom}) {
+            {.navigator = {.unknown = UnknownSpace::free},
+             .planning = {.optimizer = {.yaw = trajectory_optimizer::YawMode::along_motion}},
+             .home_map = kFrom}) {
     lab.set_truth(std::make_shared<const VoxelGrid>(VoxelGrid{
         .geometry = world.geometry, .grown = world.occupied, .known = {}, .raw = world.occupied}));
     lab.watch = [this] { look(); };
@@ -131,6 +136,14 @@ TEST(Noisy, GoalsAreReachedWhereverWallsLieInTheirVoxels) {
   }
   std::printf("%d flights: %d of %d goals, %d losses, %.1f s each\n", flights, arrived, 2 * flights,
               losses, flown_s / flights);
+}
+
+// It flies to what lies behind it, and back.
+TEST(Noisy, AViewOf90DegreesIsEnoughForTheVehicleLooksWhereItFlies) {
+  NoisyFlight flight({.kind = "forest", .seed = 9, .view_rad = 0.5 * std::numbers::pi});
+  EXPECT_TRUE(flight.fly(kTo)) << flight.lab.state().reason.message;
+  EXPECT_TRUE(flight.fly(kFrom)) << flight.lab.state().reason.message;
+  EXPECT_EQ(flight.lab.contacts(), 0);
 }
 
 }  // namespace
