@@ -72,15 +72,20 @@ LiveMapper mapper(const worlds::World& world, const Noisy& noisy) {
       .value();
 }
 
+closed_loop::Setup noisy_setup() {
+  closed_loop::Setup setup;
+  setup.navigator.unknown = UnknownSpace::free;
+  setup.planning.optimizer.yaw = trajectory_optimizer::YawMode::along_motion;
+  setup.home_map = kFrom;
+  return setup;
+}
+
 /// A vehicle that begins knowing nothing.
 struct NoisyFlight {
   explicit NoisyFlight(const Noisy& noisy)
       : world(shifted(noisy)),
         live(mapper(world, noisy)),
-        lab(live.map(), std::uint64_t(noisy.seed),
-            {.navigator = {.unknown = UnknownSpace::free},
-             .planning = {.optimizer = {.yaw = trajectory_optimizer::YawMode::along_motion}},
-             .home_map = kFrom}) {
+        lab(live.map(), std::uint64_t(noisy.seed), noisy_setup()) {
     lab.set_truth(std::make_shared<const VoxelGrid>(VoxelGrid{
         .geometry = world.geometry, .grown = world.occupied, .known = {}, .raw = world.occupied}));
     lab.watch = [this] { look(); };

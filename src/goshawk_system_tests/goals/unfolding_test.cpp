@@ -39,15 +39,20 @@ worlds::World made(const char* kind, double density, std::uint64_t seed) {
   return worlds::make_world(spec).value();
 }
 
+closed_loop::Setup setup_of(const navigator::Config& config, double move_within_m) {
+  closed_loop::Setup setup;
+  setup.navigator = config;
+  setup.planning.search.move_within_m = move_within_m;
+  setup.home_map = kHome;
+  return setup;
+}
+
 /// A vehicle with a sensor in a world; what it is to fly is checked at every millisecond.
 struct Flight {
   Flight(const worlds::World& made, std::uint64_t seed, const navigator::Config& config,
          double range_m = 6.0, double move_within_m = 0.0)
       : world(made, range_m),
-        lab((world.see_from(kHome), world.map()), seed,
-            {.navigator = config,
-             .planning = {.search = {.move_within_m = move_within_m}},
-             .home_map = kHome}) {
+        lab((world.see_from(kHome), world.map()), seed, setup_of(config, move_within_m)) {
     lab.set_truth(world.truth());
     lab.watch = [this] { look(); };
   }
