@@ -15,8 +15,8 @@ namespace {
 
 // A failure is believed after this time: a good answer may still come.
 constexpr double kDoubt_s = 0.1;
-// A trajectory that was flown for so long did not fail at once.
-constexpr double kFlown_s = 1.0;
+// Failures of trajectories in flight that lie so far apart are not added up.
+constexpr double kApart_s = 1.0;
 
 // About one request; the sentence of its end counts them all.
 constexpr int kMostComplaints = 3;
@@ -147,7 +147,9 @@ void Navigator::on_tracker_report(std::uint64_t id, const Error& outcome, std::i
   // A later stop that is not taken leaves the earlier one, which leads to the same goal; one that
   // gave way to an even later stop leaves that.
   if (schedule_.drop_later_stop(id)) return say_what_is_flown(now_ns);
-  if (now_ns - leg->start_ns() > to_ns(kFlown_s)) pursuit_.failures = 0;
+  const bool flew = std::ranges::any_of(schedule_.legs(), &Leg::accepted);
+  if (flew && now_ns - pursuit_.lost_ns > to_ns(kApart_s)) pursuit_.failures = 0;
+  pursuit_.lost_ns = now_ns;
   left_ = Left{*leg, now_ns, !pursuit_.open};
   if (leg->accepted) {
     lost_id_ = id;
@@ -173,7 +175,7 @@ void Navigator::take_up_again(std::uint64_t followed_id, std::int64_t now_ns) {
 
 // What was committed for the newest goal will not lead there.
 void Navigator::pursue_again(const Error& why, std::int64_t now_ns) {
-  if (state_ == State::failed || state_ == State::idle) return say_what_is_flown(now_ns);
+  if (has_given_up() || state_ == State::idle) return say_what_is_flown(now_ns);
   drop_open();
   if (++pursuit_.failures >= config_.max_attempts) return give_up(why, now_ns);
   reopen(0, now_ns);
@@ -222,7 +224,7 @@ void Navigator::check_legs(std::int64_t now_ns) {
 
 void Navigator::blocked(const Error& why, std::int64_t now_ns) {
   const bool brakes_now = brake(now_ns);
-  if (state_ == State::failed || (brakes() && !brakes_now)) return;
+  if (has_given_up() || (brakes() && !brakes_now)) return;
   drop_open();
   reopen(brakes_now ? schedule_.last()->start_ns() : 0, now_ns);
   enter(State::flying, now_ns, {why.code, why.message + "; planning again"});

@@ -58,7 +58,7 @@ bool Navigator::leave_blocked_place(std::int64_t now_ns) {
   const Vec3 place_map = start_at_rest(now_ns).state.position;
   const auto voxel = map()->geometry.index_of(place_map);
   if (!voxel || !map()->grown.get(*voxel)) return false;
-  auto way = way_out(place_map, space_, config_.limits());
+  auto way = way_out(place_map, space_, limits_from({}));
   if (!way) return false;
   auto committed = CommittedTrajectory::make(from_rest(*std::move(way), now_ns));
   if (!committed) return false;
@@ -79,7 +79,7 @@ bool Navigator::look_along(const Trajectory& way, std::int64_t now_ns) {
   const Vec3 half = Vec3::Constant(kStill_m);
   auto certified =
       certify(std::move(still), {Polytope::box(rest.position - half, rest.position + half)},
-              config_.limits(), rest, rest);
+              limits_from({}), rest, rest);
   if (!certified) return false;
   Commitment content = from_rest(*std::move(certified), now_ns);
   content.yaw_rad = *heading_rad;
