@@ -153,6 +153,7 @@ struct Node::Impl {
   void lead(const Node& node);
   bool give_turn(const Node& node, std::size_t follower);
   void call_the_roll(const Node& node);
+  void settle() const;
   /// An exception is a bug of the component: logged, then left to end the process.
   template <typename Callback, typename... Arguments>
   void call(const Node& node, const std::string& what, const Callback& callback,

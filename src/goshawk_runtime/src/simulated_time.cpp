@@ -18,7 +18,10 @@ using goshawk_msgs::msg::Turn;
 
 constexpr const char* kDone = "/turn_done";
 constexpr double kAskAgain_s = 0.5;  // a follower that died may come back under the same name
-constexpr double kSettle_s = 1.0;    // for the followers to find each other
+// Followers find each other as their leader finds them: once that has found nothing new for so
+// long.
+constexpr std::chrono::milliseconds kQuiet{1000};
+constexpr std::chrono::seconds kMostSettling{10};  // strangers may come and go all the time
 
 std::string turn_topic(const std::string& full_name) {
   return full_name + "/turn";
@@ -154,15 +157,24 @@ bool Node::Impl::give_turn(const Node& node, std::size_t follower) {
   return false;
 }
 
-// Simulated time begins when every follower is there and has had time to find the others.
+void Node::Impl::settle() const {
+  const auto end = Steady::now() + kMostSettling;
+  auto changed = Steady::now();
+  for (std::size_t known = 0; !stopping && Steady::now() < std::min(end, changed + kQuiet);) {
+    if (const auto now = context.listener.known(); now != known) {
+      known = now;
+      changed = Steady::now();
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+}
+
+// Simulated time begins when every follower is there and has found the others.
 void Node::Impl::call_the_roll(const Node& node) {
   for (std::size_t i = 0; i < time.followers.size(); ++i) {
     if (!give_turn(node, i)) return;
   }
-  const auto until = Steady::now() + std::chrono::duration<double>(kSettle_s);
-  while (!stopping && Steady::now() < until) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  }
+  settle();
   drain(node);
   time.begun = true;
   time.next_step = Steady::now();
