@@ -112,7 +112,9 @@ Status Estimate::check_odometry(const VehicleOdometry& odometry) const {
         "PX4's odometry is refused: a number in it is not finite, or its quaternion has not "
         "the length one");
   }
-  const double deviation_m = std::sqrt(from_array(odometry.position_variance).maxCoeff());
+  const Vec3 variance = from_array(odometry.position_variance);
+  if (!variance.allFinite()) return lost("it does not tell how certain its position is");
+  const double deviation_m = std::sqrt(variance.maxCoeff());
   if (!(deviation_m <= max_deviation_m_)) {
     return lost(
         fmt::format("its position has a standard deviation of {:.2g} m, more than "
