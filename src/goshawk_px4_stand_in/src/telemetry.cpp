@@ -52,6 +52,9 @@ bool Autopilot::due(Due& what) {
 }
 
 void Autopilot::report() {
+  if (due(sticks_due_)) {
+    wire_->send(ManualControlSetpoint{true, config_.sticks == Sticks::moved});
+  }
   const VehicleStatus now = status();
   if (due(status_due_) || !(now == said_)) {
     said_ = now;
@@ -67,9 +70,6 @@ void Autopilot::report() {
     flags.offboard_control_signal_lost = !offboard_alive();
     flags.battery_unhealthy = config_.battery < kCriticalCharge;
     wire_->send(flags);
-  }
-  if (due(sticks_due_)) {
-    wire_->send(ManualControlSetpoint{true, config_.sticks == Sticks::moved});
   }
   if (due(local_due_)) wire_->send(local_position());
   if (due(odometry_due_)) wire_->send(odometry());

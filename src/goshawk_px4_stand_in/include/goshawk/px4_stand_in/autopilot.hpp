@@ -129,7 +129,7 @@ class Autopilot {
   px4::VehicleStatus said_;
   bool said_landed_ = false;
   Due status_due_{500'000'000}, land_due_{1'000'000'000}, battery_due_{1'000'000'000},
-      flags_due_{500'000'000}, sticks_due_{200'000'000}, local_due_{20'000'000},
+      flags_due_{500'000'000}, sticks_due_{40'000'000}, local_due_{20'000'000},
       odometry_due_{10'000'000};
 };
 
