@@ -12,8 +12,9 @@ ALL = ["/*"]
 STAGES = {
     # cloud_in and depth_in are remapped if Goshawk's own sensors fill them (launch file live).
     "map_server": {"reads": ["cloud_in", "points", "depth_in", "depth/image_rect_raw",
-                             "depth_info_in", "depth/camera_info", "odom", "/tf", "/tf_static"],
-                   "writes": [*MAP, "octomap_binary"]},
+                             "depth_info_in", "depth/camera_info", "octomap_in", "odom", "/tf",
+                             "/tf_static"],
+                   "writes": [*MAP, "octomap_binary", "octomap_world"]},
     "path_search": {"reads": [*MAP, "plan_request"], "writes": ["path"]},
     "corridor_builder": {"reads": [*MAP, "plan_request", "path"], "writes": ["corridor"]},
     "trajectory_optimizer": {"reads": ["plan_request", "corridor"], "writes": ["trajectory"]},
@@ -37,7 +38,7 @@ STAGES = {
 PEOPLE = {
     "viewer": {"reads": ALL, "writes": ["goal_pose"]},
     "recorder": {"reads": ALL, "writes": []},
-    "operator": {"reads": ALL, "writes": ["goal_pose", "/parameter_request"]},
+    "operator": {"reads": ALL, "writes": ["goal_pose", "octomap_in", "/parameter_request"]},
 }
 COMPONENTS = {"simulator": "vehicle", "mujoco": "vehicle", "viewer_bridge": "viewer",
               "baseline_optimizer": "trajectory_optimizer"}
