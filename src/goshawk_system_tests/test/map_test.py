@@ -198,7 +198,7 @@ class SavedMap(MapCase):
     def test_a_saved_map_is_taken_by_another_server_and_grows_there(self):
         saved, again = self.sandbox.folder / "saved.bt", self.sandbox.folder / "again.bt"
         server, reports = self.run_server(*self.WINDOW)
-        self.fly([3.0 + 2.0 * k for k in range(20)])
+        self.fly([3.0 + 2.0 * k for k in range(25)])
         told = self.map_json("save", saved)
         self.assertLess(told["lower_m"][0], 2.0, "what left the window is not in it")
         self.assertGreater(told["upper_m"][0], 40.0)
@@ -210,7 +210,7 @@ class SavedMap(MapCase):
         self.map_json("load", saved)
         self.map_json("save", again)
         self.assertTrue(self.map_json("diff", saved, again)["same"])
-        self.fly([45.0, 47.0])
+        self.fly([61.0, 63.0])
         self.map_json("save", again)
         grown = self.map_json("diff", saved, again)
         self.assertGreater(grown["learnt_voxels"], 20)
@@ -226,7 +226,8 @@ class SavedMap(MapCase):
 
     def check_refusals(self, saved):
         coarse = self.sandbox.folder / "coarse.bt"
-        made = self.sandbox.goshawk("world", coarse, "--resolution", "0.5", timeout_s=60)
+        made = self.sandbox.goshawk("world", coarse, "--kind", "forest", "--size", "20,20,5",
+                                    "--density", "0.05", "--resolution", "0.5", timeout_s=60)
         self.assertEqual(made.status, 0, str(made))
         for words, code, sentence in [
                 (["load", coarse], "invalid_input", "of one size"),
