@@ -275,6 +275,8 @@ void run(Report& report) {
   const std::vector<double> shares =
       quick ? std::vector{0.01} : std::vector{0.001, 0.003, 0.01, 0.03, 0.1};
   for (const auto& named : words_of(Preset{})) {
+    const bool dense = named.value == Preset::os0_128 || named.value == Preset::os1_128;
+    if (quick && (dense || named.value == Preset::avia)) continue;
     report.progress(std::string(named.word));
     measure_thin(report, named.value, ranges_m);
     for (const double share : shares) {
