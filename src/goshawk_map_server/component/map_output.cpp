@@ -56,6 +56,7 @@ void MapOutput::publish_update(GridUpdate& update) {
 }
 
 void MapOutput::publish_world_if_asked(const LiveMap& map, std::int64_t max_voxels) {
+  if (node_.in_lock_step()) return;  // when a reader is found does not repeat
   const int readers = world_.matched();
   const bool come = readers > world_readers_;
   world_readers_ = readers;
