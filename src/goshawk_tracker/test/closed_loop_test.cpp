@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "goshawk/tracker/flatness.hpp"
+#include "goshawk/core/flatness.hpp"
 #include "trajectories.hpp"
 
 namespace goshawk::tracker {
