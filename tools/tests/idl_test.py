@@ -73,7 +73,9 @@ class OwnMessages(unittest.TestCase):
                  for s in structs for f in s.fields if f.constants}
         self.assertLessEqual({("StageReport", "stage"), ("NavigatorState", "state"),
                               ("TrackingState", "mode"), ("ParameterRequest", "verb"),
-                              ("ParameterAnswer", "verb"), ("VehicleStatus", "control")}, named)
+                              ("ParameterAnswer", "verb"), ("VehicleStatus", "control"),
+                              ("MissionState", "state"), ("OperatorCommand", "verb"),
+                              ("GuardVerdict", "kind"), ("GuardVerdict", "verdict")}, named)
 
 
 if __name__ == "__main__":

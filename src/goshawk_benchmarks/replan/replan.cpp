@@ -9,8 +9,8 @@
 #include "common/report.hpp"
 #include "goshawk/core/free_curve.hpp"
 #include "goshawk/core/inflation.hpp"
+#include "goshawk/core/stop_part.hpp"
 #include "goshawk/corridor_builder/corridor_builder.hpp"
-#include "goshawk/navigator/stop_part.hpp"
 #include "goshawk/path_search/path_search.hpp"
 #include "goshawk/trajectory_optimizer/trajectory_optimizer.hpp"
 #include "goshawk/worlds/world.hpp"
@@ -97,7 +97,7 @@ class Planner {
 
  private:
   Result<CommittedTrajectory> commit(std::uint64_t id, CertifiedTrajectory nominal) {
-    auto stop = navigator::latest_stop(nominal, space_, 0.0);
+    auto stop = latest_stop(nominal, space_, 0.0);
     if (!stop) return stop.error();
     auto committed = CommittedTrajectory::make({.id = id,
                                                 .nominal = std::move(nominal),

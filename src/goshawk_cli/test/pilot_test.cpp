@@ -24,7 +24,8 @@ using Json = nlohmann::json;
 using testing::HasSubstr;
 
 /// A vehicle that is at (1, 2, 3), and at its goal as soon as the navigator says so. The navigator
-/// arrived somewhere before; it flies for some messages, then arrives, or refuses what has x above 50.
+/// arrived somewhere before; it flies for some messages, then arrives, or refuses what has x
+/// above 50.
 class Flight : public testing::Test {
  protected:
   void SetUp() override {
@@ -40,12 +41,12 @@ class Flight : public testing::Test {
     odometry_ = node_->advertise<nav_msgs::msg::Odometry>("odom", Qos::best_effort());
     states_ = node_->advertise<NavigatorState>("navigator_state", Qos::latched(20));
     say(state::STATE_ARRIVED, "ok", "");
-    node_->subscribe<geometry_msgs::msg::PoseStamped>(
-        "goal_pose", Qos::reliable_last(), [this](const auto& goal, const auto&) {
-          const std::lock_guard lock(mutex_);
-          goals_.push_back(goal);
-          steps_ = 0;
-        });
+    node_->subscribe<geometry_msgs::msg::PoseStamped>("goal_pose", Qos::reliable_last(),
+                                                      [this](const auto& goal, const auto&) {
+                                                        const std::lock_guard lock(mutex_);
+                                                        goals_.push_back(goal);
+                                                        steps_ = 0;
+                                                      });
     node_->every(0.02, [this] { step(); });
     thread_ = std::thread([this] { node_->spin(); });
   }
@@ -57,6 +58,11 @@ class Flight : public testing::Test {
   std::vector<geometry_msgs::msg::PoseStamped> goals() {
     const std::lock_guard lock(mutex_);
     return goals_;
+  }
+  /// Whether the navigator has said how the newest goal ended.
+  bool has_answered() {
+    const std::lock_guard lock(mutex_);
+    return steps_ > 10;
   }
 
  private:
@@ -115,7 +121,8 @@ TEST_F(Flight, GotoSendsTheGoalAndWaitsForTheVehicle) {
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const Json json = Json::parse(outcome.out);
   EXPECT_EQ(json["goal"], Json::parse("[4.0, 5.0, 6.0]"));
-  EXPECT_GT(json["time_s"], 0.1) << "the arrival at an earlier goal is not an answer";
+  EXPECT_GT(json["time_s"], 0.0);
+  EXPECT_TRUE(has_answered()) << "the arrival at an earlier goal is not an answer";
   ASSERT_EQ(goals().size(), 1U);
   const auto& pose = goals()[0].pose();
   EXPECT_EQ(goals()[0].header().frame_id(), "map");

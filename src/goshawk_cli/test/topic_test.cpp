@@ -79,6 +79,14 @@ class Verbs : public testing::Test {
     const std::lock_guard lock(mutex_);
     return goals_;
   }
+  /// A writer ends once its messages have arrived, which the node's thread may take later.
+  std::vector<std::string> goals(std::size_t wanted) {
+    const auto begin = Steady::now();
+    while (goals().size() < wanted && seconds_since(begin) < 60.0) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    return goals();
+  }
 
   std::unique_ptr<Context> context_;
   std::unique_ptr<Node> node_;
@@ -90,12 +98,45 @@ class Verbs : public testing::Test {
   std::vector<std::string> goals_;
 };
 
+/// What is not there costs the whole timeout: a short one, and a longer one as long as the machine
+/// has not found so much that it can say the sentence.
+Outcome miss(const std::vector<std::string>& arguments, const std::string& sentence) {
+  Outcome outcome;
+  for (const char* timeout_s : {"0.7", "4", "16"}) {
+    auto patient = arguments;
+    patient.insert(patient.end(), {"--timeout", timeout_s});
+    outcome = run(patient);
+    if (outcome.err.find(sentence) != std::string::npos) return outcome;
+  }
+  ADD_FAILURE() << "'" << sentence << "' is not in: " << outcome.err;
+  return outcome;
+}
+
+/// Lists are what was found when nothing new came for a moment: on a busy machine that may be a
+/// part.
+/// @return the first that has all of the words, or the last
+Outcome list(const std::vector<std::string>& arguments, const std::vector<std::string>& words) {
+  Outcome outcome;
+  for (int k = 0; k < 10; ++k) {
+    outcome = find(arguments);
+    const auto has = [&](const std::string& word) {
+      return outcome.out.find(word) < outcome.out.size();
+    };
+    if (std::ranges::all_of(words, has)) break;
+  }
+  return outcome;
+}
+
+const std::vector<std::string> kTopics{"/uav1/goal", "/uav1/map/voxels", "/uav1/path",
+                                       "/uav1/state"};
+
 TEST_F(Verbs, ListsTopicsWithTypes) {
-  EXPECT_EQ(find({"topic", "list"}).out, "/uav1/goal\n/uav1/map/voxels\n/uav1/path\n/uav1/state\n");
-  const auto typed = find({"topic", "list", "-t"});
+  EXPECT_EQ(list({"topic", "list"}, kTopics).out,
+            "/uav1/goal\n/uav1/map/voxels\n/uav1/path\n/uav1/state\n");
+  const auto typed = list({"topic", "list", "-t"}, kTopics);
   EXPECT_EQ(typed.status, 0) << typed.err;
   EXPECT_THAT(typed.out, HasSubstr("/uav1/path [goshawk_msgs/msg/Path]\n"));
-  const Json json = Json::parse(find({"topic", "list", "--json"}).out);
+  const Json json = Json::parse(list({"topic", "list", "--json"}, kTopics).out);
   EXPECT_EQ(json["domain"], domain());
   ASSERT_EQ(json["topics"].size(), 4u);
   EXPECT_EQ(json["topics"][2], Json::parse(R"({"name": "/uav1/path", "publishers": 1,
@@ -145,7 +186,9 @@ TEST_F(Verbs, EchoesTheNewestOfWhatALatchedTopicKeeps) {
     message.data(text);
     ASSERT_TRUE(counts.publish(message));
   }
-  EXPECT_EQ(find({"topic", "echo", "/uav1/count", "--once"}).out, "data: \"three\"\n---\n");
+  // The newest of what came within a moment: on a busy machine it may be asked for again.
+  EXPECT_EQ(list({"topic", "echo", "/uav1/count", "--once"}, {"three"}).out,
+            "data: \"three\"\n---\n");
   EXPECT_EQ(find({"topic", "echo", "/uav1/count", "-n", "2", "--field", "data"}).out,
             "one\n---\ntwo\n---\n");
 }
@@ -160,9 +203,8 @@ TEST_F(Verbs, EchoesAPartOfAMessage) {
   EXPECT_EQ(echo({"--field", "header.frame_id"}).out, "map\n---\n");
   EXPECT_EQ(echo({"--field", "waypoints[1]"}).out, "x: 1.5\ny: 0.0\nz: 0.0\n---\n");
   EXPECT_EQ(echo({"--field", "waypoints", "--csv"}).out, "0.0,0.0,0.0,1.5,0.0,0.0\n");
-  EXPECT_EQ(echo({"--field", "waypoints[-1]", "--json"}).out,
-            "{\"x\":1.5,\"y\":0.0,\"z\":0.0}\n");
-  const auto wrong = run({"topic", "echo", "/uav1/path", "--field", "waypoint"});
+  EXPECT_EQ(echo({"--field", "waypoints[-1]", "--json"}).out, "{\"x\":1.5,\"y\":0.0,\"z\":0.0}\n");
+  const auto wrong = find({"topic", "echo", "/uav1/path", "--field", "waypoint"});
   EXPECT_EQ(wrong.status, 2);
   EXPECT_THAT(wrong.err, HasSubstr("did you mean waypoints?"));
 }
@@ -195,7 +237,7 @@ TEST_F(Verbs, MeasuresRateDelayAndBandwidth) {
 }
 
 TEST_F(Verbs, DelayNeedsAHeader) {
-  const auto outcome = run({"topic", "delay", "/uav1/goal"});
+  const auto outcome = find({"topic", "delay", "/uav1/goal"});
   EXPECT_EQ(outcome.status, 2);
   EXPECT_THAT(outcome.err, HasSubstr("has no header"));
 }
@@ -204,11 +246,11 @@ TEST_F(Verbs, PublishesJsonAndYaml) {
   const auto once =
       find({"topic", "pub", "/uav1/goal", "std_msgs/String", "{\"data\": \"a\"}", "--once"});
   EXPECT_EQ(once.status, 0) << once.err;
-  EXPECT_EQ(goals(), std::vector<std::string>{"a"});
+  EXPECT_EQ(goals(1), std::vector<std::string>{"a"});
   const auto thrice = find({"topic", "pub", "/uav1/goal", "std_msgs/msg/String", "data: 'b'", "-r",
                             "100", "-n", "3", "--json"});
   EXPECT_EQ(thrice.status, 0) << thrice.err;
-  EXPECT_EQ(goals(), (std::vector<std::string>{"a", "b", "b", "b"}));
+  EXPECT_EQ(goals(4), (std::vector<std::string>{"a", "b", "b", "b"}));
   EXPECT_EQ(Json::parse(thrice.out)["published"], 3);
 }
 
@@ -217,7 +259,7 @@ TEST_F(Verbs, PublishesAMessageALineFromStandardInput) {
               domain(), "{\"data\": \"a\"}\n\ndata: b\n{data: 'the last line needs no end'}");
   const auto all = child.finish();
   EXPECT_EQ(all.status, 0) << all.err;
-  EXPECT_EQ(goals(), (std::vector<std::string>{"a", "b", "the last line needs no end"}));
+  EXPECT_EQ(goals(3), (std::vector<std::string>{"a", "b", "the last line needs no end"}));
   EXPECT_EQ(std::ranges::count(all.out, '\n'), 3);
   EXPECT_EQ(Json::parse(all.out.substr(all.out.find('\n', all.out.find('\n') + 1)))["published"],
             3);
@@ -226,32 +268,33 @@ TEST_F(Verbs, PublishesAMessageALineFromStandardInput) {
   const auto refused = wrong.finish();
   EXPECT_EQ(refused.status, 2);
   EXPECT_THAT(refused.err, HasSubstr("did you mean data?"));
-  EXPECT_EQ(goals().size(), 4u) << "those before the wrong one, and none behind it";
+  EXPECT_EQ(goals(4).size(), 4u) << "those before the wrong one, and none behind it";
 }
 
 TEST_F(Verbs, PublishesNothingUntilSoManyRead) {
-  const auto few = run({"topic", "pub", "/uav1/goal", "std_msgs/String", "{data: d}", "--once",
-                        "-w", "2", "--timeout", "1"});
+  const auto few =
+      miss({"topic", "pub", "/uav1/goal", "std_msgs/String", "{data: d}", "--once", "-w", "2"},
+           "only 1 of 2 readers of /uav1/goal came");
   EXPECT_EQ(few.status, 1);
-  EXPECT_THAT(few.err, HasSubstr("only 1 of 2 readers of /uav1/goal came"));
   EXPECT_TRUE(goals().empty());
 }
 
 TEST_F(Verbs, ListsNodes) {
-  const auto list = find({"node", "list"});
-  EXPECT_EQ(list.status, 0) << list.err;
-  EXPECT_EQ(list.out, "/uav1/planner\n");
+  const auto names = find({"node", "list"});
+  EXPECT_EQ(names.status, 0) << names.err;
+  EXPECT_EQ(names.out, "/uav1/planner\n");
   const Json json = Json::parse(find({"node", "list", "--json"}).out);
   EXPECT_EQ(json["nodes"][0]["name"], "/uav1/planner");
   EXPECT_EQ(json["nodes"][0]["process"], "goshawk_" + std::to_string(getpid()));
 }
 
 TEST_F(Verbs, TellsWhatANodeWritesAndReads) {
-  const auto text = find({"node", "info", "uav1/planner"});
-  EXPECT_THAT(text.out, HasSubstr("Publishers: 3\n  /uav1/map/voxels  [goshawk_msgs/msg/VoxelGrid]\n"))
+  const auto text = list({"node", "info", "uav1/planner"}, kTopics);
+  EXPECT_THAT(text.out,
+              HasSubstr("Publishers: 3\n  /uav1/map/voxels  [goshawk_msgs/msg/VoxelGrid]\n"))
       << text.err;
   EXPECT_THAT(text.out, HasSubstr("Subscribers: 1\n  /uav1/goal  [std_msgs/msg/String]\n"));
-  const Json json = Json::parse(find({"node", "info", "/uav1/planner", "--json"}).out);
+  const Json json = Json::parse(list({"node", "info", "/uav1/planner", "--json"}, kTopics).out);
   EXPECT_EQ(json["others"], Json::array());
   EXPECT_EQ(json["publishers"].size(), 3U);
   EXPECT_EQ(json["subscribers"][0]["name"], "/uav1/goal");
@@ -260,28 +303,13 @@ TEST_F(Verbs, TellsWhatANodeWritesAndReads) {
   EXPECT_THAT(wrong.err, HasSubstr("/uav1/planer"));
 }
 
-/// What is not there costs the whole timeout: a short one, and a longer one if the machine had
-/// not found the others by then.
-Outcome miss(const std::vector<std::string>& arguments) {
-  Outcome outcome;
-  for (const char* timeout_s : {"1", "4", "16"}) {
-    auto patient = arguments;
-    patient.insert(patient.end(), {"--timeout", timeout_s});
-    outcome = run(patient);
-    if (outcome.status == 2) break;
-  }
-  return outcome;
-}
-
 TEST_F(Verbs, NameTheNearestTopic) {
   for (const char* verb : {"info", "hz"}) {
-    const auto outcome = miss({"topic", verb, "/uav1/pth"});
-    EXPECT_EQ(outcome.status, 2) << verb;
-    EXPECT_THAT(outcome.err, HasSubstr("did you mean /uav1/path?")) << verb;
+    EXPECT_EQ(miss({"topic", verb, "/uav1/pth"}, "did you mean /uav1/path?").status, 2) << verb;
   }
-  const auto pub = miss({"topic", "pub", "/uav1/gaol", "std_msgs/String", "{}", "--once"});
-  EXPECT_EQ(pub.status, 2);
-  EXPECT_THAT(pub.err, HasSubstr("did you mean /uav1/goal?"));
+  const std::vector<std::string> pub{"topic",           "pub", "/uav1/gaol",
+                                     "std_msgs/String", "{}",  "--once"};
+  EXPECT_EQ(miss(pub, "did you mean /uav1/goal?").status, 2);
 }
 
 TEST_F(Verbs, EndCleanlyOnCtrlC) {
@@ -295,9 +323,8 @@ TEST_F(Verbs, EndCleanlyOnCtrlC) {
 }
 
 TEST_F(Verbs, SayWhenNoMessageComes) {
-  const auto outcome = run({"topic", "echo", "/uav1/goal", "--once", "--timeout", "0.5"});
-  EXPECT_EQ(outcome.status, 1);
-  EXPECT_THAT(outcome.err, HasSubstr("no message came on /uav1/goal within 0.5 s"));
+  const std::vector<std::string> echo{"topic", "echo", "/uav1/goal", "--once"};
+  EXPECT_EQ(miss(echo, "no message came on /uav1/goal within").status, 1);
 }
 
 // Nobody is in this domain.
@@ -343,15 +370,14 @@ TEST(VerbsAlone, NameWhatIsWrongInACall) {
 }
 
 TEST(VerbsAlone, FailAsJsonWhereThatIsAskedFor) {
-  for (const auto& [arguments, status] :
-       {std::pair{std::vector<std::string>{"topic", "list"}, 1},
-        {{"topic", "echo", "/a", "--once"}, 1},
-        {{"topic", "echo", "/a b"}, 2},
-        {{"topic", "hz"}, 2},
-        {{"node", "list"}, 1},
-        {{"node", "lst"}, 2},
-        {{"param", "get", "/a"}, 1},
-        {{"param", "describe", "no_such_component"}, 2}}) {
+  for (const auto& [arguments, status] : {std::pair{std::vector<std::string>{"topic", "list"}, 1},
+                                          {{"topic", "echo", "/a", "--once"}, 1},
+                                          {{"topic", "echo", "/a b"}, 2},
+                                          {{"topic", "hz"}, 2},
+                                          {{"node", "list"}, 1},
+                                          {{"node", "lst"}, 2},
+                                          {{"param", "get", "/a"}, 1},
+                                          {{"param", "describe", "no_such_component"}, 2}}) {
     auto call = arguments;
     call.emplace_back("--json");
     if (status == 1) call.insert(call.end(), {"--timeout", "0.3"});

@@ -18,7 +18,9 @@ static_assert(std::uint8_t(StageRole::navigator) == stage::STAGE_NAVIGATOR);
 static_assert(std::uint8_t(StageRole::tracker) == stage::STAGE_TRACKER);
 static_assert(std::uint8_t(StageRole::vehicle) == stage::STAGE_VEHICLE);
 static_assert(std::uint8_t(StageRole::flight_check) == stage::STAGE_FLIGHT_CHECK);
-static_assert(std::uint8_t(StageRole::viewer) == stage::STAGE_VIEWER);
+static_assert(std::uint8_t(StageRole::viewer) == stage::STAGE_VIEWER &&
+              std::uint8_t(StageRole::mission) == stage::STAGE_MISSION &&
+              std::uint8_t(StageRole::guard) == stage::STAGE_GUARD);
 
 }  // namespace
 
@@ -27,7 +29,7 @@ std::uint8_t to_msg(StageRole role) {
 }
 
 StageRole stage_role_of(std::uint8_t value) {
-  return value <= stage::STAGE_VIEWER ? StageRole(value) : StageRole::other;
+  return value <= stage::STAGE_GUARD ? StageRole(value) : StageRole::other;
 }
 
 ErrorCode error_code_of(std::string_view name) {
@@ -49,6 +51,8 @@ std::string_view navigator_state_word(std::uint8_t value) {
       return "arrived";
     case state::STATE_FAILED:
       return "failed";
+    case state::STATE_HELD:
+      return "held";
     default:
       return "unknown";
   }

@@ -8,7 +8,7 @@ namespace goshawk::conversions {
 namespace {
 
 TEST(StageRoles, ComeBackAsTheyWereSent) {
-  for (int value = 0; value <= goshawk_msgs::msg::StageReport_Constants::STAGE_VIEWER; ++value) {
+  for (int value = 0; value <= goshawk_msgs::msg::StageReport_Constants::STAGE_GUARD; ++value) {
     EXPECT_EQ(to_msg(stage_role_of(std::uint8_t(value))), value);
   }
 }
@@ -24,6 +24,7 @@ TEST(Words, AreThoseOfTheConstants) {
   EXPECT_EQ(navigator_state_word(NavigatorState_Constants::STATE_FLYING), "flying");
   EXPECT_EQ(navigator_state_word(NavigatorState_Constants::STATE_ARRIVED), "arrived");
   EXPECT_EQ(navigator_state_word(NavigatorState_Constants::STATE_FAILED), "failed");
+  EXPECT_EQ(navigator_state_word(NavigatorState_Constants::STATE_HELD), "held");
   EXPECT_EQ(navigator_state_word(77), "unknown");
   EXPECT_EQ(tracking_mode_word(TrackingState_Constants::MODE_IDLE), "idle");
   EXPECT_EQ(tracking_mode_word(TrackingState_Constants::MODE_HOLD), "hold");

@@ -71,8 +71,13 @@ CommittedTrajectory::CommittedTrajectory(Commitment content) : content_(std::mov
 std::vector<Polytope> CommittedTrajectory::flown_polytopes() const {
   std::vector<Polytope> polytopes = content_.nominal.polytopes();
   if (content_.stop) {
-    const auto& more = content_.stop->trajectory.polytopes();
-    polytopes.insert(polytopes.end(), more.begin(), more.end());
+    for (Polytope more : content_.stop->trajectory.polytopes()) {
+      if (!more.always_valid()) {  // its interval counts from the stop part's start
+        more.valid_from_s += content_.stop->after_s;
+        more.valid_until_s += content_.stop->after_s;
+      }
+      polytopes.push_back(std::move(more));
+    }
   }
   return polytopes;
 }

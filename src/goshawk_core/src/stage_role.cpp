@@ -6,9 +6,10 @@
 namespace goshawk {
 namespace {
 
-constexpr std::array<std::string_view, 10> kWords{
+constexpr std::array<std::string_view, 12> kWords{
     "other",     "map_server", "path_search", "corridor_builder", "trajectory_optimizer",
-    "navigator", "tracker",    "vehicle",     "flight_check",     "viewer"};
+    "navigator", "tracker",    "vehicle",     "flight_check",     "viewer",
+    "mission",   "guard"};
 
 }  // namespace
 

@@ -222,6 +222,72 @@ TEST(BrickMap, AWindowThatMovesIsThatOfGrowingAnewAndUpdatesSubscribers) {
   }
 }
 
+// Nothing that was measured is lost: what leaves is handed over with the bits that it had.
+TEST(BrickMap, WhatLeavesTheWindowIsHandedOverWholeWheneverItMoves) {
+  Random random(9);
+  const Index3 size{192, 24, 16};
+  const BrickGrowth growth = growth_of(1, 0.6);
+  BrickMap map = BrickMap::make(size, growth).value();
+  PlainWorld world;
+  Index3 lower;
+  std::size_t left = 0;
+  for (int step = 0; step < 40; ++step) {
+    if (random.chance(0.7)) write_some(map, world, lower, 6, random);
+    if (random.chance(0.3)) map.regrow();
+    const Index3 by{random.below(3) - 1, random.below(3) - 1, random.below(3) - 1};
+    map.shift(by, [&](Index3 brick, const BrickMap::Bits& bits) {
+      ++left;
+      for (int k = 0; k < 64 * 8 * 8; ++k) {
+        const Index3 in{k % 64, k / 64 % 8, k / 512};
+        const auto row = std::size_t(8 * in.z + in.y);
+        const auto state =
+            world.at(lower + Index3{64 * brick.x + in.x, 8 * brick.y + in.y, 8 * brick.z + in.z});
+        const bool raw = bits.raw[row] >> in.x & 1U, known = bits.known[row] >> in.x & 1U;
+        ASSERT_EQ(known, state != PlainWorld::State::unknown);
+        ASSERT_EQ(raw, state == PlainWorld::State::occupied);
+      }
+    });
+    lower = lower + Index3{64 * by.x, 8 * by.y, 8 * by.z};
+    forget_outside(world, lower, size);
+  }
+  EXPECT_GT(left, 20U);
+}
+
+// Writes, moves and growths in any order, some of them several times in a row.
+TEST(BrickMap, InAnyOrderOfWhatIsDoneItIsTheWindowGrownAnew) {
+  Random random(10);
+  const Index3 size{128, 16, 16};
+  for (int round = 0; round < 9; ++round) {
+    const BrickGrowth growth = growth_of(round % 3, random.uniform(0.0, 1.0));
+    BrickMap map = BrickMap::make(size, growth).value();
+    PlainWorld world;
+    Index3 lower;
+    for (int step = 0; step < 24; ++step) {
+      const int what = random.below(4);
+      if (what < 2) {
+        write_some(map, world, lower, 4, random);
+      } else if (what == 2) {
+        const Index3 by{random.below(3) - 1, random.below(3) - 1, random.below(3) - 1};
+        map.shift(by, [](Index3, const BrickMap::Bits&) {});
+        lower = lower + Index3{64 * by.x, 8 * by.y, 8 * by.z};
+        forget_outside(world, lower, size);
+      } else {
+        map.regrow();
+        const Dense dense = dense_of(map);
+        expect_same(dense, anew(world, lower, size, growth));
+        EXPECT_EQ(map.any_free(), dense.grown.count() < dense.grown.voxels());
+      }
+      for (int k = 0; k < 50; ++k) {  // single voxels, inside and around
+        const Index3 i{random.below(140) - 6, random.below(28) - 6, random.below(28) - 6};
+        const bool inside = i.x >= 0 && i.y >= 0 && i.z >= 0 && i.x < 128 && i.y < 16 && i.z < 16;
+        const auto state = inside ? world.at(lower + i) : PlainWorld::State::unknown;
+        ASSERT_EQ(map.is_known(i), state != PlainWorld::State::unknown);
+        ASSERT_EQ(map.is_raw(i), state == PlainWorld::State::occupied);
+      }
+    }
+  }
+}
+
 TEST(BrickMap, BricksThatLeaveAreHandedOverAndTheirMemoryIsUsedAgain) {
   BrickMap map = BrickMap::make({128, 8, 8}, growth_of(2, 0.0)).value();
   for (int step = 0; step < 50; ++step) {

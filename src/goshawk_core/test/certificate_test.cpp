@@ -268,5 +268,105 @@ TEST(Certificate, DoesNotHoldForAPieceThatOutlastsItsPolytope) {
   EXPECT_FALSE(with(0.0, NAN).holds());
 }
 
+/// The largest use of limits and the largest jerk that samples of a trajectory show.
+struct Sampled {
+  double speed = 0.0, acceleration = 0.0;  // of the limits
+  double jerk_m_s3 = 0.0;
+};
+
+Sampled sample(const Plan& plan, double from_s = 0.0) {
+  Sampled most;
+  const Limits& l = plan.limits;
+  const auto use = [](const Vec3& v, double horizontal, double vertical) {
+    return std::max(std::hypot(v.x(), v.y()) / horizontal, std::abs(v.z()) / vertical);
+  };
+  const double end_s = plan.trajectory.duration_s();
+  for (int k = 0; k <= 600; ++k) {
+    const FlatState s = plan.trajectory.sample(from_s + (end_s - from_s) * k / 600.0);
+    most.speed = std::max(most.speed, use(s.velocity, l.v_max_m_s, l.v_max_vertical_m_s));
+    most.acceleration =
+        std::max(most.acceleration, use(s.acceleration, l.a_max_m_s2, l.a_max_vertical_m_s2));
+    most.jerk_m_s3 = std::max(most.jerk_m_s3, s.jerk.norm());
+  }
+  return most;
+}
+
+TEST(Certificate, BoundsSamplesOfTheJerkAndOfHorizontalAndVerticalMotionApart) {
+  Random random(9);
+  double bounds = 0.0, samples = 0.0;
+  for (int n = 0; n < 200; ++n) {
+    Plan plan = good_plan(random);
+    plan.limits = {.v_max_m_s = random.uniform(0.5, 5.0),
+                   .a_max_m_s2 = random.uniform(0.5, 20.0),
+                   .norm = LimitNorm::horizontal_vertical,
+                   .j_max_m_s3 = random.uniform(1.0, 50.0),
+                   .v_max_vertical_m_s = random.uniform(0.1, 1.0),
+                   .a_max_vertical_m_s2 = random.uniform(0.5, 5.0)};
+    const Certificate c = plan.certificate();
+    const Sampled most = sample(plan);
+    ASSERT_GE(c.velocity_m_s, (most.speed - 1.0) * plan.limits.v_max_m_s - 1e-9);
+    ASSERT_GE(c.acceleration_m_s2, (most.acceleration - 1.0) * plan.limits.a_max_m_s2 - 1e-9);
+    ASSERT_GE(c.jerk_m_s3, most.jerk_m_s3 - plan.limits.j_max_m_s3 - 1e-9);
+    bounds += c.jerk_m_s3 + plan.limits.j_max_m_s3;
+    samples += most.jerk_m_s3;
+  }
+  EXPECT_LT(bounds, 2.5 * samples) << "a bound, but no loose one";
+}
+
+/// Braking from a start that is too fast, in eight pieces; the limits are 2 m/s and 4 m/s^2.
+Plan braking(Random& random) {
+  Plan plan;
+  plan.limits = {.v_max_m_s = 2.0,
+                 .a_max_m_s2 = 4.0,
+                 .norm = LimitNorm::horizontal_vertical,
+                 .v_max_vertical_m_s = 2.0,
+                 .a_max_vertical_m_s2 = 4.0};
+  plan.start.velocity = Vec3(random.uniform(2.05, 3.0), 0.0, random.uniform(-0.5, 0.5));
+  plan.goal.velocity = Vec3(random.uniform(0.5, 2.2), 0.0, 0.0);
+  const double lasts_s = random.uniform(0.5, 2.0);
+  plan.goal.position = 0.5 * lasts_s * (plan.start.velocity + plan.goal.velocity);
+  const Trajectory whole{{BezierPiece::between(plan.start, plan.goal, lasts_s)}};
+  for (int k = 0; k < 8; ++k) {
+    plan.trajectory.pieces.push_back(BezierPiece::between(
+        whole.sample(lasts_s * k / 8.0), whole.sample(lasts_s * (k + 1) / 8.0), lasts_s / 8.0));
+  }
+  plan.polytopes = {Polytope::box(Vec3::Constant(-9.0), Vec3::Constant(9.0))};
+  return plan;
+}
+
+TEST(Certificate, OfAStartThatIsTooFastNamesTheMomentFromWhichTheLimitsHold) {
+  Random random(10);
+  int good = 0, bad = 0, back = 0;
+  for (int n = 0; n < 400; ++n) {
+    const Plan plan = braking(random);
+    const Certificate c = plan.certificate();
+    const auto allowance = StartAllowance::of(plan.start, plan.limits);
+    const Sampled all = sample(plan);
+    if (!c.holds()) {
+      ++bad;
+      continue;
+    }
+    ++good;
+    ASSERT_GE(c.start_excess_m_s, (all.speed - 1.0) * plan.limits.v_max_m_s - 1e-9);
+    ASSERT_GE(c.start_excess_m_s2, (all.acceleration - 1.0) * plan.limits.a_max_m_s2 - 1e-9);
+    ASSERT_LE(all.speed, allowance.speed + 1e-6);
+    ASSERT_LE(all.acceleration, allowance.acceleration + 1e-6);
+    ASSERT_GT(c.start_excess_s, 0.0);
+    if (c.start_excess_s < plan.trajectory.duration_s() - 1e-9) {  // else nothing comes after it
+      ++back;
+      const Sampled later = sample(plan, c.start_excess_s);
+      ASSERT_LE(later.speed, 1.0 + 1e-6);
+      ASSERT_LE(later.acceleration, 1.0 + 1e-6);
+    }
+    // Not long before, something is above its limit.
+    const double piece_s = plan.trajectory.pieces[0].duration_s;
+    const Sampled before = sample(plan, std::max(0.0, c.start_excess_s - 1.5 * piece_s));
+    ASSERT_GT(std::max(before.speed, before.acceleration), 1.0 - 0.05);
+  }
+  EXPECT_GT(good, 50);
+  EXPECT_GT(bad, 50);
+  EXPECT_GT(back, 30);
+}
+
 }  // namespace
 }  // namespace goshawk

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "goshawk/core/random.hpp"
+
 namespace goshawk {
 namespace {
 
@@ -121,6 +123,55 @@ TEST(CommittedTrajectory, IsRefusedWithYawOrTimeOutOfRange) {
   EXPECT_EQ(code([](Commitment& c) { c.yaw_curve = YawCurve{}; }), ErrorCode::invalid_input);
   EXPECT_EQ(code([](Commitment& c) { c.start_time_ns = std::numeric_limits<std::int64_t>::min(); }),
             ErrorCode::invalid_input);
+}
+
+/// Three pieces, each in a room of its own that is free only while the piece is flown, and a
+/// little longer.
+CertifiedTrajectory through_timed_rooms(Random& random, const FlatState& from, bool to_rest) {
+  Trajectory trajectory;
+  std::vector<Polytope> rooms;
+  FlatState state = from;
+  double begin_s = 0.0;
+  for (int k = 0; k < 3; ++k) {
+    FlatState next;
+    next.position = state.position + Vec3(1.0, random.uniform(-0.3, 0.3), 0.0);
+    if (k < 2 || !to_rest) next.velocity = Vec3(0.8, random.uniform(-0.2, 0.2), 0.0);
+    trajectory.pieces.push_back(BezierPiece::between(state, next, random.uniform(1.0, 1.6)));
+    trajectory.pieces.back().polytope = k;
+    rooms.push_back(
+        Polytope::box(state.position - Vec3::Constant(2.0), next.position + Vec3::Constant(2.0)));
+    rooms.back().valid_from_s = begin_s - 0.01;
+    begin_s += trajectory.pieces.back().duration_s;
+    rooms.back().valid_until_s = begin_s + 0.01;
+    state = next;
+  }
+  return certify(trajectory, rooms, Limits{.v_max_m_s = 5.0, .a_max_m_s2 = 50.0}, from, state)
+      .value();
+}
+
+// The parts are certified apart, each with times from its own start: the whole is as good.
+TEST(CommittedTrajectory, WhatIsFlownIsCertifiedAsAWholeWithTheTimesOfItsRooms) {
+  Random random(1);
+  for (int n = 0; n < 50; ++n) {
+    const auto nominal = through_timed_rooms(random, at(0), false);
+    const double after_s = random.uniform(0.1, 0.95) * nominal.duration_s();
+    FlatState turn = nominal.trajectory().sample(after_s);
+    turn.jerk.setZero();
+    const auto stop = through_timed_rooms(random, turn, true);
+    const auto committed =
+        CommittedTrajectory::make({.nominal = nominal, .stop = StopPart{after_s, stop}});
+    ASSERT_TRUE(committed) << committed.error().message;
+    auto rooms = committed->flown_polytopes();
+    const auto certificate = [&] {
+      return measure(committed->flown(), rooms, nominal.limits(), nominal.start(), stop.goal());
+    };
+    ASSERT_TRUE(certificate().holds()) << certificate().worst();
+    ASSERT_NEAR(committed->flown().duration_s(), after_s + stop.duration_s(), 1e-9);
+    // And no better: a room of the stop part that closes sooner is noticed.
+    rooms[std::size_t(3 + random.below(3))].valid_until_s -= 0.02;
+    ASSERT_NEAR(certificate().validity_s, 0.01, 1e-9);
+    ASSERT_FALSE(certificate().holds());
+  }
 }
 
 }  // namespace

@@ -4,8 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "goshawk/core/random.hpp"
 
@@ -206,6 +211,57 @@ TEST(Locate, RefusesWhatIsNotFiniteAndKeepsHugeNumbersReadable) {
   EXPECT_EQ(far.code(), ErrorCode::goal_outside);
   EXPECT_NE(far.error().message.find("(1e+300, 0, -1e+300)"), std::string::npos)
       << far.error().message;
+}
+
+/// [voxels^2] between the cubes of two voxels
+int squared_gap(Index3 a, Index3 b) {
+  const auto along = [](int i, int k) { return std::max(0, std::abs(i - k) - 1); };
+  const int x = along(a.x, b.x), y = along(a.y, b.y), z = along(a.z, b.z);
+  return x * x + y * y + z * z;
+}
+
+/// The voxel whose centre a sentence names after these words.
+std::optional<Index3> named_after(const std::string& words, const std::string& sentence,
+                                  const GridGeometry& geometry) {
+  const auto at = sentence.find(words);
+  double x = 0.0, y = 0.0, z = 0.0;
+  if (at == std::string::npos ||
+      std::sscanf(sentence.c_str() + at + words.size(), "(%lf, %lf, %lf)", &x, &y, &z) != 3) {
+    return {};
+  }
+  return geometry.index_of(Vec3(x, y, z));
+}
+
+// By looking at every voxel.
+TEST(Locate, NamesAnObstacleThanWhichNoneIsNearer) {
+  Random random(2);
+  int named = 0;
+  for (int round = 0; round < 30; ++round) {
+    VoxelGrid grid;
+    grid.geometry = {Vec3(-1.0, 2.0, 0.5), 0.2, {14, 13, 12}};
+    grid.raw = BitGrid(grid.geometry.size, true);
+    std::vector<Index3> obstacles;
+    for (int k = 0; k < 4; ++k) {
+      obstacles.push_back({random.below(14), random.below(13), random.below(12)});
+      grid.raw.set(obstacles.back(), true);
+    }
+    grid.inflation_m = random.uniform(0.2, 0.9);
+    grid.grown = inflate(grid.raw, grid.inflation_m, 0.2).value();
+    for (int k = 0; k < 14 * 13 * 12; ++k) {
+      const Index3 i{k % 14, k / 14 % 13, k / (14 * 13)};
+      if (!grid.grown.get(i) || grid.raw.get(i)) continue;
+      const auto located = locate(grid, grid.geometry.center(i), Endpoint::start);
+      ASSERT_EQ(located.code(), ErrorCode::start_occupied);
+      const auto told = named_after("the obstacle at ", located.error().message, grid.geometry);
+      ASSERT_TRUE(told) << located.error().message;
+      ASSERT_TRUE(grid.raw.get(*told));
+      int least = std::numeric_limits<int>::max();
+      for (const Index3 o : obstacles) least = std::min(least, squared_gap(i, o));
+      ASSERT_EQ(squared_gap(i, *told), least) << located.error().message;
+      ++named;
+    }
+  }
+  EXPECT_GT(named, 1000);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "goshawk/core/random.hpp"
@@ -76,6 +77,28 @@ TEST(YawCurve, CheckRefusesWhatIsNoCurve) {
   }
   for (const double bad : {double(NAN), double(INFINITY)}) {
     EXPECT_EQ((YawCurve{0.1, {0, 1, bad}}.check().code()), ErrorCode::invalid_input) << bad;
+  }
+}
+
+// What proves a rate limit without a look at the curve.
+TEST(YawCurve, ItsPointsBoundItsHeadingAndItsRateAtAllTimesAndNotLoosely) {
+  Random random(4);
+  for (int n = 0; n < 200; ++n) {
+    const YawCurve curve = random_curve(random);
+    double bound = 0.0, fastest = 0.0;
+    for (std::size_t k = 1; k < curve.points_rad.size(); ++k) {
+      const double difference = curve.points_rad[k] - curve.points_rad[k - 1];
+      bound = std::max(bound, std::abs(difference) / curve.step_s);
+    }
+    const auto [low, high] = std::ranges::minmax(curve.points_rad);
+    for (int k = 0; k <= 1000; ++k) {
+      const double t = curve.duration_s() * k / 1000.0;
+      ASSERT_GE(curve.yaw_rad(t), low - 1e-12);
+      ASSERT_LE(curve.yaw_rad(t), high + 1e-12);
+      fastest = std::max(fastest, std::abs(curve.rate_rad_s(t)));
+    }
+    ASSERT_LE(fastest, bound * (1.0 + 1e-12));
+    ASSERT_GT(fastest, 0.9 * bound);
   }
 }
 

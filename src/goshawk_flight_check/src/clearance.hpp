@@ -5,9 +5,12 @@
 
 #include <limits>
 #include <memory>
+#include <span>
+#include <vector>
 
 #include "goshawk/core/vehicle.hpp"
 #include "goshawk/flight_check/body.hpp"
+#include "goshawk/flight_check/solid.hpp"
 
 namespace goshawk::flight_check {
 
@@ -25,7 +28,7 @@ struct Clearance {
   Vec3 obstacle_map = Vec3::Zero();
 };
 
-/// Distances between one body and the occupied leaves of one OctoMap, by FCL.
+/// Distances between one body and the occupied leaves of one OctoMap, or some solids, by FCL.
 class ClearanceMeter {
  public:
   /// FCL's own GJK overestimates the distance of a cylinder and a box by up to 1e-5 m; anything
@@ -34,6 +37,8 @@ class ClearanceMeter {
 
   /// @pre inner nodes of the tree are up to date; body.check() ok
   ClearanceMeter(std::shared_ptr<const octomap::OcTree> tree, const Body& body);
+  /// @pre each solid's check() ok; body.check() ok
+  ClearanceMeter(std::span<const Solid> solids, const Body& body);
 
   /// @param at_most_m [m] the clearance is known not to be larger: makes the search about
   /// ten times faster. A wrong bound costs time, never a wrong answer.
@@ -41,9 +46,15 @@ class ClearanceMeter {
                     double at_most_m = std::numeric_limits<double>::infinity()) const;
 
  private:
-  Vec3 contact_map(const Pose& pose) const;
+  struct Obstacle {
+    std::shared_ptr<fcl::CollisionGeometry<double>> geometry;
+    fcl::Transform3<double> pose;
+    fcl::AABB<double> box;  // around it, in the map
+  };
+  void add(std::shared_ptr<fcl::CollisionGeometry<double>> geometry, const Vec3& place_map);
+  Vec3 contact_map(const Obstacle& obstacle, const Pose& pose) const;
 
-  std::shared_ptr<fcl::OcTree<double>> obstacles_;
+  std::vector<Obstacle> obstacles_;
   std::shared_ptr<fcl::ShapeBase<double>> body_;
 };
 

@@ -79,11 +79,8 @@ std::string sentence_of(const Verdict& v) {
 
 class FlightCheck::Implementation {
  public:
-  Implementation(std::shared_ptr<const octomap::OcTree> tree, const Body& body,
-                 const Options& options)
-      : meter_(std::move(tree), body),
-        reach_m_(body.reach_m()),
-        tolerance_m_(options.tolerance_m) {}
+  Implementation(ClearanceMeter meter, double reach_m, double tolerance_m)
+      : meter_(std::move(meter)), reach_m_(reach_m), tolerance_m_(tolerance_m) {}
 
   Verdict judge(std::span<const Sample> track, double below_m) const {
     const Motion motion(track, reach_m_);
@@ -122,7 +119,22 @@ Result<FlightCheck> FlightCheck::from_tree(std::unique_ptr<octomap::OcTree> tree
   if (options.count_unknown_as_obstacle) occupy_unknown(*tree);
   // FCL skips an inner node that does not know what its children hold.
   tree->updateInnerOccupancy();
-  return FlightCheck(std::make_unique<Implementation>(std::move(tree), body, options));
+  return FlightCheck(std::make_unique<Implementation>(ClearanceMeter(std::move(tree), body),
+                                                      body.reach_m(), options.tolerance_m));
+}
+
+Result<FlightCheck> FlightCheck::from_solids(std::span<const Solid> solids, const Body& body,
+                                             const Options& options) {
+  if (auto status = body.check(); !status) return status.error();
+  if (auto status = check_options(options); !status) return status.error();
+  if (solids.empty()) {
+    return fail(ErrorCode::map_empty, "the world has no solid: there is nothing to judge against");
+  }
+  for (const Solid& solid : solids) {
+    if (auto status = solid.check(); !status) return status.error();
+  }
+  return FlightCheck(std::make_unique<Implementation>(ClearanceMeter(solids, body), body.reach_m(),
+                                                      options.tolerance_m));
 }
 
 Result<FlightCheck> FlightCheck::from_payload(std::string_view payload, double resolution_m,

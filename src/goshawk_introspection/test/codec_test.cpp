@@ -16,6 +16,7 @@
 #include "random_message.hpp"
 #include "sensor_msgs.h"
 #include "tf2_msgs.h"
+#include "trajectory_msgs.h"
 #include "visualization_msgs.h"
 
 // Counts what is claimed from the heap, to prove that hostile lengths claim none.
@@ -54,18 +55,21 @@ class EveryMessage : public testing::Test {
   }
 };
 
-using Messages =
-    testing::Types<std_msgs::msg::String, geometry_msgs::msg::PoseStamped, nav_msgs::msg::Path,
-                   nav_msgs::msg::Odometry, sensor_msgs::msg::PointCloud2, sensor_msgs::msg::Image,
-                   sensor_msgs::msg::CameraInfo, visualization_msgs::msg::MarkerArray,
-                   octomap_msgs::msg::Octomap, tf2_msgs::msg::TFMessage,
-                   goshawk_msgs::msg::VoxelGrid, goshawk_msgs::msg::VoxelGridUpdate,
-                   goshawk_msgs::msg::PlanRequest, goshawk_msgs::msg::Path,
-                   goshawk_msgs::msg::Corridor, goshawk_msgs::msg::BezierTrajectory,
-                   goshawk_msgs::msg::CommittedTrajectory, goshawk_msgs::msg::AttitudeSetpoint,
-                   goshawk_msgs::msg::FallbackStop, goshawk_msgs::msg::StageReport,
-                   goshawk_msgs::msg::NavigatorState, goshawk_msgs::msg::TrackingState,
-                   goshawk_msgs::msg::ParameterAnswer, goshawk_msgs::msg::VehicleStatus>;
+using Messages = testing::Types<
+    std_msgs::msg::String, geometry_msgs::msg::PoseStamped, nav_msgs::msg::Path,
+    nav_msgs::msg::Odometry, sensor_msgs::msg::PointCloud2, sensor_msgs::msg::Image,
+    sensor_msgs::msg::CameraInfo, visualization_msgs::msg::MarkerArray, octomap_msgs::msg::Octomap,
+    tf2_msgs::msg::TFMessage, goshawk_msgs::msg::VoxelGrid, goshawk_msgs::msg::VoxelGridUpdate,
+    goshawk_msgs::msg::PlanRequest, goshawk_msgs::msg::Path, goshawk_msgs::msg::Corridor,
+    goshawk_msgs::msg::BezierTrajectory, goshawk_msgs::msg::CommittedTrajectory,
+    goshawk_msgs::msg::AttitudeSetpoint, goshawk_msgs::msg::FallbackStop,
+    goshawk_msgs::msg::StageReport, goshawk_msgs::msg::NavigatorState,
+    goshawk_msgs::msg::TrackingState, goshawk_msgs::msg::ParameterAnswer,
+    goshawk_msgs::msg::VehicleStatus, goshawk_msgs::msg::Goal, goshawk_msgs::msg::Mission,
+    goshawk_msgs::msg::MissionState, goshawk_msgs::msg::OperatorCommand,
+    goshawk_msgs::msg::OperatorAnswer, trajectory_msgs::msg::MultiDOFJointTrajectory,
+    goshawk_msgs::msg::PolynomialPlan, goshawk_msgs::msg::BsplinePlan,
+    goshawk_msgs::msg::GuardVerdict>;
 TYPED_TEST_SUITE(EveryMessage, Messages);
 
 TYPED_TEST(EveryMessage, IsByteForByteWhatTheGeneratedCodeWrites) {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <array>
 
+#include "goshawk/core/brake.hpp"
 #include "goshawk/core/free_curve.hpp"
-#include "goshawk/navigator/brake.hpp"
 #include "goshawk/navigator/navigator.hpp"
 #include "times.hpp"
 

@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "goshawk/core/free_curve.hpp"
+#include "goshawk/core/stop_part.hpp"
 #include "goshawk/navigator/answer_check.hpp"
 #include "goshawk/navigator/navigator.hpp"
-#include "goshawk/navigator/stop_part.hpp"
 #include "times.hpp"
 
 namespace goshawk::navigator {

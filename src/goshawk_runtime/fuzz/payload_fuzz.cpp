@@ -16,6 +16,7 @@
 #include "sensor_msgs.h"
 #include "std_msgs.h"
 #include "tf2_msgs.h"
+#include "trajectory_msgs.h"
 #include "visualization_msgs.h"
 
 namespace {
@@ -50,10 +51,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   decode_one<VoxelGrid, VoxelGridUpdate, PlanRequest, goshawk_msgs::msg::Path, Corridor,
              BezierTrajectory, CommittedTrajectory, AttitudeSetpoint, FallbackStop, StageReport,
              NavigatorState, TrackingState, VehicleStatus, Turn, ParameterRequest, ParameterAnswer,
-             std_msgs::msg::String, geometry_msgs::msg::PoseStamped, nav_msgs::msg::Path,
-             nav_msgs::msg::Odometry, sensor_msgs::msg::PointCloud2, sensor_msgs::msg::Image,
-             sensor_msgs::msg::CameraInfo, visualization_msgs::msg::MarkerArray,
-             octomap_msgs::msg::Octomap, tf2_msgs::msg::TFMessage, rosgraph_msgs::msg::Clock>(
+             Goal, Mission, MissionState, OperatorCommand, OperatorAnswer, std_msgs::msg::String,
+             geometry_msgs::msg::PoseStamped, nav_msgs::msg::Path, nav_msgs::msg::Odometry,
+             sensor_msgs::msg::PointCloud2, sensor_msgs::msg::Image, sensor_msgs::msg::CameraInfo,
+             visualization_msgs::msg::MarkerArray, octomap_msgs::msg::Octomap,
+             tf2_msgs::msg::TFMessage, trajectory_msgs::msg::MultiDOFJointTrajectory,
+             PolynomialPlan, BsplinePlan, GuardVerdict, rosgraph_msgs::msg::Clock>(
       data[0], Bytes(data + 1, data + size));
   return 0;
 }

@@ -32,6 +32,8 @@ class DiscoveryListener : public dds::DomainParticipantListener {
 
   std::vector<ParticipantInfo> participants() const;
   std::vector<EndpointInfo> endpoints() const;
+  /// @return how many participants and endpoints are known now
+  std::size_t known() const;
 
   /// Nodes, process and GUID of a participant, for a sentence.
   std::string describe(const Participant& participant) const;

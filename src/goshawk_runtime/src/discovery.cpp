@@ -173,6 +173,11 @@ std::vector<EndpointInfo> DiscoveryListener::endpoints() const {
   return list;
 }
 
+std::size_t DiscoveryListener::known() const {
+  const std::lock_guard lock(mutex_);
+  return participants_.size() + endpoints_.size();
+}
+
 std::string ros_type_name(std::string_view wire_name) {
   std::string name(wire_name);
   if (name.ends_with('_')) name.pop_back();

@@ -8,6 +8,7 @@
 #include "sensor_msgsPubSubTypes.h"
 #include "std_msgsPubSubTypes.h"
 #include "tf2_msgsPubSubTypes.h"
+#include "trajectory_msgsPubSubTypes.h"
 #include "visualization_msgsPubSubTypes.h"
 
 namespace goshawk::runtime {
@@ -48,6 +49,7 @@ GOSHAWK_MESSAGE(sensor_msgs, CameraInfo)
 GOSHAWK_MESSAGE(visualization_msgs, MarkerArray)
 GOSHAWK_MESSAGE(octomap_msgs, Octomap)
 GOSHAWK_MESSAGE(tf2_msgs, TFMessage)
+GOSHAWK_MESSAGE(trajectory_msgs, MultiDOFJointTrajectory)
 GOSHAWK_MESSAGE(rosgraph_msgs, Clock)
 GOSHAWK_MESSAGE(goshawk_msgs, VoxelGrid)
 GOSHAWK_MESSAGE(goshawk_msgs, VoxelGridUpdate)
@@ -56,6 +58,9 @@ GOSHAWK_MESSAGE(goshawk_msgs, Path)
 GOSHAWK_MESSAGE(goshawk_msgs, Corridor)
 GOSHAWK_MESSAGE(goshawk_msgs, BezierTrajectory)
 GOSHAWK_MESSAGE(goshawk_msgs, CommittedTrajectory)
+GOSHAWK_MESSAGE(goshawk_msgs, PolynomialPlan)
+GOSHAWK_MESSAGE(goshawk_msgs, BsplinePlan)
+GOSHAWK_MESSAGE(goshawk_msgs, GuardVerdict)
 GOSHAWK_MESSAGE(goshawk_msgs, AttitudeSetpoint)
 GOSHAWK_MESSAGE(goshawk_msgs, FallbackStop)
 GOSHAWK_MESSAGE(goshawk_msgs, StageReport)
@@ -65,5 +70,10 @@ GOSHAWK_MESSAGE(goshawk_msgs, VehicleStatus)
 GOSHAWK_MESSAGE(goshawk_msgs, Turn)
 GOSHAWK_MESSAGE(goshawk_msgs, ParameterRequest)
 GOSHAWK_MESSAGE(goshawk_msgs, ParameterAnswer)
+GOSHAWK_MESSAGE(goshawk_msgs, Goal)
+GOSHAWK_MESSAGE(goshawk_msgs, Mission)
+GOSHAWK_MESSAGE(goshawk_msgs, MissionState)
+GOSHAWK_MESSAGE(goshawk_msgs, OperatorCommand)
+GOSHAWK_MESSAGE(goshawk_msgs, OperatorAnswer)
 
 }  // namespace goshawk::runtime

@@ -66,6 +66,7 @@ struct SimulatedTime {
   std::uint64_t last_turn = 0;
 
   // Leader of the others.
+  bool leads = false;
   std::vector<std::string> followers;  // full names
   std::vector<RawPublisher> turns_of;
   std::unique_ptr<Subscription> answers;
@@ -76,6 +77,8 @@ struct SimulatedTime {
   std::uint64_t turn = 0;
   std::pair<std::string, std::uint64_t> answered;  // node and turn
   Steady::time_point next_step;
+
+  bool in_lock_step() const { return takes_turns || leads; }
 };
 
 struct Node::Impl {
@@ -109,6 +112,7 @@ struct Node::Impl {
   std::map<std::string, std::shared_ptr<WriterGuard>> guards;  // by group
   std::function<void(const Error&)> on_second_writer;
   Steady::time_point looked_at_kept;
+  bool has_own_ports = false;  // of a reader, instead of the process's one
   SimulatedTime time;
   std::unique_ptr<ParameterService> parameters;
 
@@ -122,6 +126,8 @@ struct Node::Impl {
                    : std::chrono::nanoseconds(Steady::now().time_since_epoch()).count();
   }
   void set_time(std::int64_t now_ns);
+  /// Lock step needs one order of all that is heard.
+  void require_one_port(const char* call) const;
   void wait(double timeout_s);
   /// @return whether a turn, or an answer to one, came within timeout_s
   bool wait_for_turn(Subscription& subscription, double timeout_s);
@@ -147,6 +153,7 @@ struct Node::Impl {
   void lead(const Node& node);
   bool give_turn(const Node& node, std::size_t follower);
   void call_the_roll(const Node& node);
+  void settle() const;
   /// An exception is a bug of the component: logged, then left to end the process.
   template <typename Callback, typename... Arguments>
   void call(const Node& node, const std::string& what, const Callback& callback,

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -17,7 +18,10 @@ using goshawk_msgs::msg::Turn;
 
 constexpr const char* kDone = "/turn_done";
 constexpr double kAskAgain_s = 0.5;  // a follower that died may come back under the same name
-constexpr double kSettle_s = 1.0;    // for the followers to find each other
+// Followers find each other as their leader finds them: once that has found nothing new for so
+// long.
+constexpr std::chrono::milliseconds kQuiet{1000};
+constexpr std::chrono::seconds kMostSettling{10};  // strangers may come and go all the time
 
 std::string turn_topic(const std::string& full_name) {
   return full_name + "/turn";
@@ -46,6 +50,14 @@ void Node::Impl::set_time(std::int64_t now_ns) {
   time.now_ns = now_ns;
 }
 
+void Node::Impl::require_one_port(const char* call) const {
+  if (!has_own_ports) return;
+  throw std::logic_error(
+      fmt::format("Node::{}() comes before subscriptions: a reader with a port of "
+                  "its own does not hear in the order of turns",
+                  call));
+}
+
 void Node::use_simulated_time() {
   if (impl_->time.on) return;
   impl_->time.on = true;
@@ -59,6 +71,7 @@ void Node::use_simulated_time() {
 void Node::run_in_lock_step() {
   auto& time = impl_->time;
   if (time.takes_turns) return;
+  impl_->require_one_port("run_in_lock_step");
   time.on = time.takes_turns = true;
   time.turns_done = advertise<Turn>(kDone, Qos::reliable_last(100));
   time.turns =
@@ -97,7 +110,9 @@ void Node::lead_lock_step(const LockStep& lock_step) {
   if (!(lock_step.step_s >= 1e-6 && lock_step.step_s <= 1.0) || !(lock_step.speed >= 0.0)) {
     throw std::invalid_argument("Node::lead_lock_step: a step of 1e-6 to 1 s, a speed above 0");
   }
+  impl_->require_one_port("lead_lock_step");
   auto& time = impl_->time;
+  time.leads = true;
   const std::string prefix = args_.node_namespace == "/" ? "" : args_.node_namespace;
   for (const auto& name : lock_step.followers) {
     time.followers.push_back(name.starts_with('/') ? name : prefix + "/" + name);
@@ -142,15 +157,24 @@ bool Node::Impl::give_turn(const Node& node, std::size_t follower) {
   return false;
 }
 
-// Simulated time begins when every follower is there and has had time to find the others.
+void Node::Impl::settle() const {
+  const auto end = Steady::now() + kMostSettling;
+  auto changed = Steady::now();
+  for (std::size_t known = 0; !stopping && Steady::now() < std::min(end, changed + kQuiet);) {
+    if (const auto now = context.listener.known(); now != known) {
+      known = now;
+      changed = Steady::now();
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+}
+
+// Simulated time begins when every follower is there and has found the others.
 void Node::Impl::call_the_roll(const Node& node) {
   for (std::size_t i = 0; i < time.followers.size(); ++i) {
     if (!give_turn(node, i)) return;
   }
-  const auto until = Steady::now() + std::chrono::duration<double>(kSettle_s);
-  while (!stopping && Steady::now() < until) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  }
+  settle();
   drain(node);
   time.begun = true;
   time.next_step = Steady::now();

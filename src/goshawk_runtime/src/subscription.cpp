@@ -62,7 +62,7 @@ std::unique_ptr<Subscription> Node::Impl::open(const Node& node, const std::stri
     // A process has one receiving thread for all other topics, where a setpoint would wait behind
     // the hundreds of datagrams of a map. In lock step everything comes in order through one
     // socket.
-    own_port = may_be_megabytes(type.name()) && !time.takes_turns &&
+    own_port = may_be_megabytes(type.name()) && !time.in_lock_step() &&
                std::getenv("FASTRTPS_DEFAULT_PROFILES_FILE") == nullptr;
   }
   const auto create = [&] {
@@ -76,6 +76,7 @@ std::unique_ptr<Subscription> Node::Impl::open(const Node& node, const std::stri
     auto& properties = reader_qos.properties().properties();
     properties.emplace_back("fastdds.unique_network_flows", "true");
     reader = create();
+    has_own_ports |= reader != nullptr;
     if (reader == nullptr) properties.pop_back();  // all ports are taken
   }
   if (reader == nullptr) reader = create();

@@ -66,7 +66,7 @@ TEST_F(Nodes, DeliverInOrder) {
   }
   spin_until(b_, [&] { return got.size() == 100; });
   EXPECT_EQ(got, sent);
-  EXPECT_TRUE(publisher.wait_acknowledged(5.0));
+  EXPECT_TRUE(publisher.wait_acknowledged(60.0));
 }
 
 TEST_F(Nodes, DoDeferredWorkAfterTheMessagesThatAreThere) {
@@ -82,7 +82,7 @@ TEST_F(Nodes, DoDeferredWorkAfterTheMessagesThatAreThere) {
   ASSERT_TRUE(meet(publisher) && meet(other));
   for (const char* data : {"1", "2"}) ASSERT_TRUE(publisher.publish(text(data)));
   ASSERT_TRUE(other.publish(text("3")));
-  ASSERT_TRUE(publisher.wait_acknowledged(5.0) && other.wait_acknowledged(5.0));
+  ASSERT_TRUE(publisher.wait_acknowledged(60.0) && other.wait_acknowledged(60.0));
   spin_until(b_, [&] { return events.size() == 5; });
   EXPECT_THAT(events, ElementsAre("1", "2", "3", "later 1", "later 2"));
 }

@@ -23,22 +23,31 @@ TEST(PrivateDomain, IsGivenOnce) {
   }
 }
 
-TEST(PrivateDomain, IsFreeAgainWhenItsProcessIsKilled) {
+/// A process holds a domain and is killed. @return whether the domain could be held afterwards
+bool is_free_after_a_kill() {
   int to_parent[2];
-  ASSERT_EQ(pipe(to_parent), 0);
+  EXPECT_EQ(pipe(to_parent), 0);
   const pid_t child = fork();
-  ASSERT_GE(child, 0);
+  EXPECT_GE(child, 0);
   if (child == 0) {
     const int domain = hold_private_domain().value();
     (void)!::write(to_parent[1], &domain, sizeof domain);
     while (true) pause();
   }
   int domain = 0;
-  ASSERT_EQ(::read(to_parent[0], &domain, sizeof domain), ssize_t(sizeof domain));
+  EXPECT_EQ(::read(to_parent[0], &domain, sizeof domain), ssize_t(sizeof domain));
   EXPECT_FALSE(hold_domain(domain));
   kill(child, SIGKILL);
   waitpid(child, nullptr, 0);
-  EXPECT_TRUE(hold_domain(domain));
+  for (const int end : to_parent) close(end);
+  return bool(hold_domain(domain));
+}
+
+// Another test on this machine may take the domain first, but not each time.
+TEST(PrivateDomain, IsFreeAgainWhenItsProcessIsKilled) {
+  bool free = false;
+  for (int k = 0; k < 5 && !free; ++k) free = is_free_after_a_kill();
+  EXPECT_TRUE(free);
 }
 
 // A program that joined a domain without holding it, as one of another DDS would.

@@ -5,6 +5,7 @@
 #include "domain.hpp"
 #include "goshawk/conversions/geometry.hpp"
 #include "rosgraph_msgs.h"
+#include "sensor_msgs.h"
 #include "std_msgs.h"
 
 namespace goshawk::runtime {
@@ -101,6 +102,44 @@ TEST(LockStep, WhatOneSaysInItsTurnTheNextHearsInTheSameStep) {
     EXPECT_EQ(heard[k], std::to_string(kFirst_ns + std::int64_t(k + 1) * 10'000'000));
   }
   EXPECT_EQ(heard, answered);
+}
+
+// Clouds and maps have a port of their own elsewhere, which a busy machine may serve later.
+TEST(LockStep, MegabytesAreHeardInTheStepInWhichTheyWereSent) {
+  const auto a = join({"/leader"}), b = join({"/follower"});
+  Node leader(*a, "leader"), follower(*b, "follower");
+  leader.lead_lock_step({.followers = {"follower"}, .step_s = 0.01});
+  follower.run_in_lock_step();
+  const auto clouds =
+      follower.advertise<sensor_msgs::msg::PointCloud2>("clouds", Qos::best_effort());
+  follower.every(0.01, [&] {
+    sensor_msgs::msg::PointCloud2 cloud;
+    cloud.header().stamp(conversions::to_stamp(follower.now_ns()));
+    cloud.data().resize(40'000);
+    EXPECT_TRUE(clouds.publish(cloud));
+  });
+  std::vector<std::int64_t> stamps_ns;
+  leader.subscribe<sensor_msgs::msg::PointCloud2>(
+      "clouds", Qos::best_effort(), [&](const auto& m, const MessageInfo& info) {
+        stamps_ns.push_back(conversions::to_ns(m.header().stamp()));
+        EXPECT_EQ(stamps_ns.back(), info.received_ns);
+      });
+  const Running of_follower(follower);
+  while (stamps_ns.size() < 200) leader.spin_some(0.1);
+  for (std::size_t k = 0; k < stamps_ns.size(); ++k) {
+    EXPECT_EQ(stamps_ns[k], kFirst_ns + std::int64_t(k + 1) * 10'000'000);
+  }
+}
+
+TEST(LockStep, ComesBeforeSubscriptionsWithAPortOfTheirOwn) {
+  const auto context = join({"/n"});
+  Node leader(*context, "leader"), follower(*context, "follower");
+  for (Node* node : {&leader, &follower}) {
+    node->subscribe<sensor_msgs::msg::PointCloud2>("clouds", Qos::best_effort(),
+                                                   [](const auto&, const MessageInfo&) {});
+  }
+  EXPECT_THROW(leader.lead_lock_step({.followers = {"x"}}), std::logic_error);
+  EXPECT_THROW(follower.run_in_lock_step(), std::logic_error);
 }
 
 TEST(LockStep, TimeStandsStillUntilEveryFollowerIsThere) {

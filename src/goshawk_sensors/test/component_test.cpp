@@ -36,6 +36,7 @@ int private_domain() {
 class Vehicle {
  public:
   explicit Vehicle(runtime::Context& context) : node_(context, "vehicle") {
+    node_.lead_lock_step({.followers = {"sensors"}, .step_s = 0.01, .speed = 0.0});
     odometry_ = node_.advertise<nav_msgs::msg::Odometry>("odom", Qos::best_effort());
     keep<sensor_msgs::msg::PointCloud2>("points", clouds);
     keep<sensor_msgs::msg::Image>("depth/image_rect_raw", images);
@@ -45,7 +46,6 @@ class Vehicle {
     node_.subscribe<goshawk_msgs::msg::StageReport>(
         "stage_report", Qos::latched(20),
         [this](const auto& m, const MessageInfo&) { reports.push_back(m); });
-    node_.lead_lock_step({.followers = {"sensors"}, .step_s = 0.01, .speed = 0.0});
     node_.every(0.01, [this] { send_odometry(); });
   }
 

@@ -99,7 +99,7 @@ TEST_F(Requests, ThatANewerOneSupersedesAreDropped) {
   auto newer = request(3);
   newer.supersedes(1);
   ASSERT_TRUE(requests.publish(newer));
-  ASSERT_TRUE(requests.wait_acknowledged(10.0));  // all are there before the stage looks
+  ASSERT_TRUE(requests.wait_acknowledged(60.0));  // all are there before the stage looks
   ASSERT_TRUE(nodes_.spin_until([&] { return taken_.size() + reports_.size() == 3; }));
   EXPECT_THAT(taken_, ElementsAre(2, 3));
   ASSERT_EQ(reports_.size(), 1U);
@@ -122,7 +122,7 @@ TEST_F(Requests, OfLaterStagesAreDroppedToo) {
   auto newer = request(2);
   newer.supersedes(1);
   ASSERT_TRUE(requests.publish(newer));
-  ASSERT_TRUE(paths.wait_acknowledged(10.0) && requests.wait_acknowledged(10.0));
+  ASSERT_TRUE(paths.wait_acknowledged(60.0) && requests.wait_acknowledged(60.0));
   ASSERT_TRUE(nodes_.spin_until([&] { return taken_.size() + reports_.size() == 1; }));
   EXPECT_THAT(taken_, testing::IsEmpty());
   EXPECT_EQ(reports_.at(0).code(), "cancelled");
@@ -182,7 +182,7 @@ TEST_F(Requests, HaveTheirDeadlineFromTheirArrivalWhateverTheAskersClockSays) {
   behind.request(stamped(2, -3600 * kSecond));
   late.request(stamped(3, 0));
   ASSERT_TRUE(requests.publish(late.request()));
-  ASSERT_TRUE(requests.wait_acknowledged(10.0));
+  ASSERT_TRUE(requests.wait_acknowledged(60.0));
   nodes_.stage.spin_some(0.0);
   nodes_.clock->set(10 * kSecond);
   ASSERT_TRUE(paths.publish(ahead));

@@ -89,6 +89,11 @@ static bool all_found(dds_entity_t writer, const dds_entity_t* readers, int coun
   return found;
 }
 
+static void drop_old(dds_entity_t reader) {
+  void* sample = goshawk_take(reader, 0.0);
+  for (; sample != NULL; sample = goshawk_take(reader, 0.0)) dds_return_loan(reader, &sample, 1);
+}
+
 int main(int argc, char** argv) {
   if (argc != 4) {
     fprintf(stderr, "usage: plan_observer x y z\n");
@@ -120,11 +125,18 @@ int main(int argc, char** argv) {
   goal.header.frame_id = "map";
   goal.pose.position = (Point){atof(argv[1]), atof(argv[2]), atof(argv[3])};
   goal.pose.orientation.w = 1.0;
-  if (dds_write(goals, &goal) != DDS_RETCODE_OK) return 1;
 
-  goshawk_msgs_msg_Path* path = goshawk_take(paths, 10.0);
-  goshawk_msgs_msg_Corridor* corridor = goshawk_take(corridors, 5.0);
-  Trajectory* trajectory = goshawk_take(trajectories, 5.0);
+  // A stage may not have found us yet: the goal is sent again until all three answer it.
+  goshawk_msgs_msg_Path* path = NULL;
+  goshawk_msgs_msg_Corridor* corridor = NULL;
+  Trajectory* trajectory = NULL;
+  for (int attempt = 0; attempt < 5 && trajectory == NULL; ++attempt) {
+    for (int i = 0; i < 3; ++i) drop_old(answers[i]);
+    if (dds_write(goals, &goal) != DDS_RETCODE_OK) return 1;
+    path = goshawk_take(paths, 10.0);
+    corridor = path ? goshawk_take(corridors, 10.0) : NULL;
+    trajectory = corridor ? goshawk_take(trajectories, 10.0) : NULL;
+  }
   if (path == NULL || corridor == NULL || trajectory == NULL) {
     fprintf(stderr, "no answer: path %d, corridor %d, trajectory %d\n", path != NULL,
             corridor != NULL, trajectory != NULL);

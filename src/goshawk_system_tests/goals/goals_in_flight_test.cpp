@@ -6,11 +6,13 @@
 #include <string>
 
 #include "count_of.hpp"
-#include "flight_lab.hpp"
+#include "goshawk/closed_loop/flight_lab.hpp"
 #include "growing_world.hpp"
 
 namespace goshawk::goals {
 namespace {
+
+using closed_loop::FlightLab;
 
 std::shared_ptr<const VoxelGrid> default_map() {
   return GrowingWorld(worlds::default_world()).map();

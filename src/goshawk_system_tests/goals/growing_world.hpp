@@ -3,18 +3,16 @@
 #include <cstdint>
 #include <memory>
 
+#include "goshawk/closed_loop/obstacle_distance.hpp"
 #include "goshawk/core/grid_geometry.hpp"
 #include "goshawk/core/random.hpp"
 #include "goshawk/worlds/world.hpp"
 
 namespace goshawk::goals {
 
-inline constexpr double kBody_m = 0.15;          // radius of the vehicle's body
-inline constexpr double kTrackingMargin_m = 0.05;
-
-/// [m] from a point to the nearest obstacle's cube, looked for within `within_m`; the world's faces
-/// are no obstacles. By brute force on raw voxels, without the grown map.
-double obstacle_distance_m(const VoxelGrid& map, const Vec3& p_map, double within_m);
+using closed_loop::kBody_m;
+using closed_loop::kTrackingMargin_m;
+using closed_loop::obstacle_distance_m;
 
 /// Obstacles as they are, and the map that stages make of them.
 class GrowingWorld {

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "count_of.hpp"
-#include "flight_lab.hpp"
+#include "goshawk/closed_loop/flight_lab.hpp"
 #include "growing_world.hpp"
 
 // The certificate is about the map: what our own planner makes is flown, what goes through an
@@ -14,6 +14,8 @@
 
 namespace goshawk::goals {
 namespace {
+
+using closed_loop::FlightLab;
 
 constexpr double kLongestFlight_s = 40.0;
 
@@ -31,7 +33,7 @@ GrowingWorld random_world(std::uint64_t seed, double density) {
 }
 
 FlightLab lab_in(const GrowingWorld& world, const Vec3& start, std::uint64_t seed) {
-  return {world.map(), seed, {}, {}, start};
+  return {world.map(), seed, {.home_map = start}};
 }
 
 /// Straight through whatever there is, from rest to rest, certified against a polytope of its own.
@@ -39,10 +41,9 @@ CommittedTrajectory forged(const Vec3& from, const Vec3& to, std::int64_t start_
                            std::uint64_t map_version) {
   const double duration_s = std::max(5.0 * (to - from).norm() / 2.0, 2.0);
   Trajectory trajectory{{BezierPiece::between({.position = from}, {.position = to}, duration_s)}};
-  auto certified = certify(std::move(trajectory),
-                           {Polytope::box(Vec3::Constant(-100.0), Vec3::Constant(100.0))},
-                           {.v_max_m_s = 3.0, .a_max_m_s2 = 6.0}, {.position = from},
-                           {.position = to});
+  auto certified =
+      certify(std::move(trajectory), {Polytope::box(Vec3::Constant(-100.0), Vec3::Constant(100.0))},
+              {.v_max_m_s = 3.0, .a_max_m_s2 = 6.0}, {.position = from}, {.position = to});
   EXPECT_TRUE(certified) << certified.error().message;
   return CommittedTrajectory::make({.id = 1'000'000,
                                     .nominal = *std::move(certified),
@@ -124,8 +125,8 @@ std::optional<Index3> obstacle_ahead(FlightLab& lab, const GrowingWorld& world, 
   if (!voxel) return {};
   // Within reach of the hardest stop, its shortest duration and the margin nothing appears.
   const double speed = lab.speed();
-  const double reach_m = kBody_m + 2.0 * kTrackingMargin_m + 0.45 * speed +
-                         world.map()->geometry.resolution_m;
+  const double reach_m =
+      kBody_m + 2.0 * kTrackingMargin_m + 0.45 * speed + world.map()->geometry.resolution_m;
   const Vec3 vehicle = lab.position();
   const Vec3 centre = world.map()->geometry.center(*voxel);
   const double half_diagonal = world.map()->geometry.resolution_m * std::sqrt(3.0) / 2.0;
@@ -167,9 +168,10 @@ TEST(MapPromise, ObstaclesThatAppearInFlightAreNeverTouched) {
     error_m = std::max(error_m, lab.max_error_m());
     if (HasFatalFailure()) return;
   }
-  std::printf("%d obstacles appeared, %d times braked for; nearest %.3f m, fastest %.2f m/s, "
-              "largest tracking error %.4f m\n",
-              appeared, braked, nearest_m, fastest_m_s, error_m);
+  std::printf(
+      "%d obstacles appeared, %d times braked for; nearest %.3f m, fastest %.2f m/s, "
+      "largest tracking error %.4f m\n",
+      appeared, braked, nearest_m, fastest_m_s, error_m);
   EXPECT_GT(appeared, 2 * flights_or(15));
   EXPECT_GT(braked, flights_or(15) / 2);
 }

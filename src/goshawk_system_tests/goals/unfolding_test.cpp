@@ -6,12 +6,14 @@
 #include <cstdio>
 
 #include "count_of.hpp"
-#include "flight_lab.hpp"
+#include "goshawk/closed_loop/flight_lab.hpp"
 #include "growing_world.hpp"
 #include "unfolding_world.hpp"
 
 namespace goshawk::goals {
 namespace {
+
+using closed_loop::FlightLab;
 
 constexpr double kScan_s = 0.05;
 constexpr double kLongest_s = 90.0;
@@ -39,7 +41,8 @@ worlds::World made(const char* kind, double density, std::uint64_t seed) {
 struct Flight {
   Flight(const worlds::World& made, std::uint64_t seed, const navigator::Config& config,
          double range_m = 6.0)
-      : world(made, range_m), lab((world.see_from(kHome), world.map()), seed, {}, config, kHome) {
+      : world(made, range_m),
+        lab((world.see_from(kHome), world.map()), seed, {.navigator = config, .home_map = kHome}) {
     lab.set_truth(world.truth());
     lab.watch = [this] { look(); };
   }

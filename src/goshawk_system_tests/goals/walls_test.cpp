@@ -7,12 +7,14 @@
 #include <optional>
 
 #include "count_of.hpp"
-#include "flight_lab.hpp"
+#include "goshawk/closed_loop/flight_lab.hpp"
 #include "growing_world.hpp"
 #include "unfolding_world.hpp"
 
 namespace goshawk::goals {
 namespace {
+
+using closed_loop::FlightLab;
 
 constexpr double kWallScan_s = 0.05;
 constexpr double kOdometry_s = 0.004;
@@ -79,7 +81,8 @@ void fly_at_walls(std::uint64_t seed, const WallCase& limits, WallTally& tally) 
   tracker::Config tracker;
   tracker.stop_acceleration_m_s2 =
       std::max(tracker.stop_acceleration_m_s2, 2.0 * limits.a_max_m_s2);
-  FlightLab lab(world.map(), seed, {}, config, kHallStart, tracker);
+  FlightLab lab(world.map(), seed,
+                {.navigator = config, .tracker = tracker, .home_map = kHallStart});
   lab.set_truth(world.truth());
   double next_scan_s = lab.now_s();
   lab.watch = [&] {

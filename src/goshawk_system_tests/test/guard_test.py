@@ -13,7 +13,7 @@ from stack import Launch, position_of
 START, GOAL = (3.0, 0.0, 1.0), (3.0, 8.0, 2.0)
 MODES = words("TrackingState", "mode")
 FLIGHT_CHECK = 8  # STAGE_FLIGHT_CHECK
-BEGINS_S = 10.0   # from a commit to its start: time for its verdict to come
+BEGINS_S = 10.0   # from a commit to its start: time for it, and for its verdict, to come
 
 
 def point(x, y, z):
@@ -130,7 +130,7 @@ class MapGuard(GuardCase):
             self.assertIn(self.answer(old)["code"], ("cancelled", "no_map"))
         self.assertTrue(self.stays_near(START))
         with self.subTest("a free one is flown afterwards"):
-            number = self.commit((3.0, 0.0, 1.15), duration=3.0)
+            number = self.commit((3.0, 0.0, 1.15), duration=3.0, begins_in_s=BEGINS_S)
             self.assertEqual(self.answer(number)["code"], "ok")
             self.assertTrue(until(lambda: len(self.answers(number)) > 1, 30.0))
             self.assertEqual(self.answers(number)[1]["code"], "ok", self.answers(number))

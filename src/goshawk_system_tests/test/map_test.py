@@ -118,7 +118,7 @@ class LiveMap(MapCase):
 
     def late_version(self):
         outcome = self.sandbox.goshawk("topic", "echo", "map/voxels", "--once", "--json",
-                                       "--no-arr", "--timeout", "10", timeout_s=30)
+                                       "--no-arr", "--timeout", "60", timeout_s=30)
         return json.loads(outcome.out)["version"]
 
     def state(self, bricks, origin, point, resolution=0.2):

@@ -66,10 +66,19 @@ class ReplayedStages(RecordingCase):
                 wanted = len(answers_of(stage, [m["value"] for m in self.messages(
                     file, "stage_report")]))
                 until(lambda: len(answers_of(stage, reports.lines())) >= wanted, 20.0)
+                _, output = INPUTS[stage]
+                self.wait_recorded(again, {output: len(self.messages(file, output))})
                 time.sleep(0.3)  # for one answer too many
                 launch.process.stop()
                 process.stop()
                 self.compare(file, again, stage, launch)
+
+    def wait_recorded(self, file, least):
+        """A recorder may be behind, and writes what it has once a second."""
+        def written():
+            counts = self.contents(file)["counts"]
+            return all(counts.get(topic, 0) >= count for topic, count in least.items())
+        until(written, 20.0, 0.5)
 
     def record_plans(self):
         world = self.sandbox.folder / "world.bt"
@@ -85,7 +94,9 @@ class ReplayedStages(RecordingCase):
             return [r for r in reports.lines() if r["request_id"] != 0 and
                     (r["code"] != "ok" or node_of(r) == "trajectory_optimizer")]
         self.assertTrue(until(lambda: len(ends()) >= len(GOALS), 20.0), launch.tails())
-        time.sleep(0.5)  # the recorder may be behind
+        solved = sum(r["code"] == "ok" for r in ends())
+        self.wait_recorded(file, {"/plan_request": len(GOALS), "/trajectory": solved,
+                                  "/stage_report": len(reports.lines())})
         requests.process.stop()
         reports.stop()
         launch.process.stop()

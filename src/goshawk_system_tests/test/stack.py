@@ -105,7 +105,7 @@ class Stack:
 
     def pub(self, topic, kind, message):
         result = self.sandbox.goshawk("topic", "pub", topic, kind, json.dumps(message), "--json",
-                                      "--timeout", "10", "--once", timeout_s=30)
+                                      "--timeout", "60", "--once", timeout_s=30)
         if result.status != 0:
             raise AssertionError(f"topic pub: {result}")
         return result

@@ -225,14 +225,14 @@ class LiveView(StackTest):
                               ("view/flown", {"flown track"})]:
             with self.subTest(topic=topic):
                 outcome = self.sandbox.goshawk("topic", "echo", topic, "--once", "--json",
-                                               "--timeout", "10")
+                                               "--timeout", "60")
                 self.assertEqual(outcome.status, 0, str(outcome))
                 markers = json.loads(outcome.out)["markers"]
                 self.assertEqual({m["ns"] for m in markers}, wanted)
                 for marker in markers:
                     self.assertGreater(len(marker["points"]), 1, marker["ns"])
         line = json.loads(self.sandbox.goshawk("topic", "echo", "path_line", "--once", "--json",
-                                               "--timeout", "10").out)["poses"]
+                                               "--timeout", "60").out)["poses"]
         end = line[-1]["pose"]["position"]
         self.assertLess(math.dist((end["x"], end["y"], end["z"]), NEAR), 1e-6)
 

@@ -48,6 +48,8 @@ int publish_all(Session& session, TopicWriter& writer, const Bytes& bytes, const
     ++published;
   };
   publish();
+  // A reader that was found may not have found this writer yet: the second message waits for that.
+  if (o.count > 1 && state) (void)writer.wait_arrival(o.arrival_s());
   int subscribers = writer.readers();
   session.node().every(1.0 / o.rate_hz, [&] {
     if (o.count == 0 || published < o.count) publish();
@@ -135,7 +137,8 @@ int pub(PubOptions o, const Console& console) {
   const bool from_input = o.message == "-";
   const auto bytes = TopicWriter::encode(o.type, from_input ? "{}" : o.message);
   if (!bytes) return console.failed(bytes.error());
-  if (auto name = introspection::full_topic_name(o.topic); !name) return console.failed(name.error());
+  if (auto name = introspection::full_topic_name(o.topic); !name)
+    return console.failed(name.error());
   auto session = Session::open();
   if (!session) return console.failed(session.error());
   auto writer = TopicWriter::open(**session, o.topic, o.type);

@@ -46,7 +46,7 @@ class CommittedTrajectory {
   const Trajectory& flown() const {
     return content_.stop ? to_rest_ : content_.nominal.trajectory();
   }
-  /// The nominal part's, then the stop part's.
+  /// The nominal part's, then the stop part's; their intervals count from the start of flown().
   std::vector<Polytope> flown_polytopes() const;
 
   /// Heading. @param t_s since the start, clamped to the curve; @return [rad], unwrapped

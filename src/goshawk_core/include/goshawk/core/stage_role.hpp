@@ -18,7 +18,9 @@ enum class StageRole : std::uint8_t {
   tracker,
   vehicle,  // a simulator, or the bridge to an autopilot
   flight_check,
-  viewer
+  viewer,
+  mission,
+  guard
 };
 
 /// "path_search"

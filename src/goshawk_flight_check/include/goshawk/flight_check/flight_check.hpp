@@ -11,6 +11,7 @@
 #include "goshawk/core/result.hpp"
 #include "goshawk/core/vehicle.hpp"
 #include "goshawk/flight_check/body.hpp"
+#include "goshawk/flight_check/solid.hpp"
 
 namespace octomap {
 class OcTree;
@@ -78,6 +79,11 @@ class FlightCheck {
   /// @return map_malformed, map_empty or invalid_parameter
   static Result<FlightCheck> from_payload(std::string_view payload, double resolution_m,
                                           const Body& body = {}, const Options& options = {});
+
+  /// Against the solids of a world as they are, without voxels.
+  /// @return map_empty for no solid; invalid_input for one that cannot be; invalid_parameter
+  static Result<FlightCheck> from_solids(std::span<const Solid> solids, const Body& body = {},
+                                         const Options& options = {});
 
   /// @param track in the order of time; one sample is a vehicle that does not move
   /// @param below_m [m] clearances that are not below this need not be found: the verdict's

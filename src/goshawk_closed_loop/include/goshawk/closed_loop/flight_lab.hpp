@@ -6,15 +6,13 @@
 #include <optional>
 #include <vector>
 
+#include "goshawk/closed_loop/planning.hpp"
+#include "goshawk/closed_loop/vehicle.hpp"
 #include "goshawk/core/random.hpp"
-#include "goshawk/corridor_builder/corridor_builder.hpp"
 #include "goshawk/navigator/navigator.hpp"
-#include "goshawk/path_search/path_search.hpp"
-#include "goshawk/simulator/quadrotor.hpp"
 #include "goshawk/tracker/tracker.hpp"
-#include "goshawk/trajectory_optimizer/trajectory_optimizer.hpp"
 
-namespace goshawk::goals {
+namespace goshawk::closed_loop {
 
 /// How long messages and plans take. Drawn anew for each plan.
 struct Delays {
@@ -22,18 +20,32 @@ struct Delays {
   double plan_max_s = 0.015;
   double late_share = 0.0;  // of the plans, that take up to late_s
   double late_s = 0.5;
+  /// Where set, a plan takes what this says in addition, and the planning stages begin the next
+  /// one only then: a slow planner flies as it would.
+  Stopwatch stopwatch = {};
 };
 
-/// All stages' cores, the tracker and the simulated vehicle in one thread and simulated time: a
-/// flight of a second takes milliseconds, and equal seeds give equal flights.
+/// What is flown, and how.
+struct Setup {
+  navigator::Config navigator = {};
+  tracker::Config tracker = {};
+  simulator::Config vehicle = {};
+  Planning::Config planning = {};
+  Tracking tracking = Tracking::physical;
+  Delays delays = {};
+  Vec3 home_map = Vec3(3.0, 0.0, 1.0);  // [m] where the vehicle hovers at first
+};
+
+/// All stages' cores, the tracker and a vehicle in one thread and simulated time: a flight of a
+/// second takes milliseconds, and equal seeds give equal flights (unless a stopwatch measures).
 class FlightLab {
  public:
-  FlightLab(std::shared_ptr<const VoxelGrid> map, std::uint64_t seed, const Delays& delays = {},
-            const navigator::Config& config = {}, const Vec3& home_map = Vec3(3, 0, 1),
-            const tracker::Config& tracker_config = {});
+  /// @pre the setup's configurations are valid (throws else)
+  FlightLab(std::shared_ptr<const VoxelGrid> map, std::uint64_t seed, const Setup& setup = {});
 
   /// From here on all stages have this map.
   void set_map(std::shared_ptr<const VoxelGrid> map);
+  const std::shared_ptr<const VoxelGrid>& map() const { return map_; }
 
   /// What the vehicle touches, if the map does not show it all.
   void set_truth(std::shared_ptr<const VoxelGrid> truth) { truth_ = std::move(truth); }
@@ -51,27 +63,36 @@ class FlightLab {
 
   tracker::Tracker& tracker() { return tracker_; }
   const std::optional<CommittedTrajectory>& flown() const { return flown_; }  // newest accepted
-  std::int64_t now_ns() const { return vehicle_.time_ns(); }
-  const Vec3& position() const { return vehicle_.state().position_map; }
-  const Vec3& velocity() const { return vehicle_.state().velocity_map; }
+  std::int64_t now_ns() const { return vehicle_->time_ns(); }
+  double now_s() const { return double(now_ns()) * 1e-9; }
+  const RigidBodyState& vehicle() const { return vehicle_->state(); }  // the truth
+  const Vec3& position() const { return vehicle().position_map; }
+  const Vec3& velocity() const { return vehicle().velocity_map; }
   double speed() const { return velocity().norm(); }
   bool moves() const { return tracker_.status().mode != tracker::Mode::hold; }
   const navigator::StateOrder& state() const { return state_; }
   bool settled() const {
     return state_.state == navigator::State::arrived || state_.state == navigator::State::failed;
   }
-  double now_s() const { return double(vehicle_.time_ns()) * 1e-9; }
 
   int plans() const { return plans_; }
   int commits() const { return commits_; }
+  /// [s] what each plan took, and the check of its answer; only with a stopwatch
+  const std::vector<double>& computed_s() const { return computed_s_; }
   int contacts() const { return contacts_; }  // milliseconds in which the body touches
   double max_error_m() const { return max_error_m_; }
   double max_speed_m_s() const { return max_speed_m_s_; }
   std::vector<Error> refusals;  // of the tracker
   std::vector<Error> losses;    // of trajectories, by the tracker
+  std::vector<Error> failures;  // of plans
 
   /// Called after each millisecond.
   std::function<void()> watch;
+  /// Called for each commit that the tracker has taken.
+  std::function<void(const CommittedTrajectory&)> on_commit;
+
+  /// In so many seconds of simulated time.
+  void in(double seconds, std::function<void()> act);
 
  private:
   struct Event {
@@ -79,29 +100,24 @@ class FlightLab {
     std::function<void()> act;
   };
   void step();
-  void in(double seconds, std::function<void()> act);
+  void exchange(std::int64_t now_ns);
   void take_orders();
   void obey(const PlanRequest& request);
   void obey(const navigator::Commit& commit);
   void obey(const navigator::Complaint&) {}
   void obey(const navigator::StateOrder& state) { state_ = state; }
-  struct Planned {
-    Result<Commitment> answer;
-    StageRole last;  // the stage that made it, or failed
-  };
-  Planned plan(const PlanRequest& request);
+  void answer(const PlanRequest& request, Planning::Answer planned, double computed_s);
+  double delay_s(double computed_s);
+  double timed_s(const std::function<void()>& work);
   void report_tracker();
 
-  Vec3 home_map_;
+  Setup setup_;
   std::shared_ptr<const VoxelGrid> map_;
   std::shared_ptr<const VoxelGrid> truth_;
   bool planning_lives_ = true;
   Random random_;
-  Delays delays_;
-  path_search::PathSearch search_;
-  corridor_builder::CorridorBuilder builder_;
-  trajectory_optimizer::TrajectoryOptimizer optimizer_;
-  simulator::Quadrotor vehicle_;
+  Planning planning_;
+  std::unique_ptr<Vehicle> vehicle_;
   tracker::Tracker tracker_;
   navigator::Navigator navigator_;
   navigator::StateOrder state_;
@@ -109,11 +125,13 @@ class FlightLab {
   std::optional<CommittedTrajectory> flown_;
   std::string reported_;
   std::uint64_t answers_ = 0;
+  std::int64_t busy_until_ns_ = 0;  // the planning stages
   int plans_ = 0;
   int commits_ = 0;
+  std::vector<double> computed_s_;
   int contacts_ = 0;
   double max_error_m_ = 0.0;
   double max_speed_m_s_ = 0.0;
 };
 
-}  // namespace goshawk::goals
+}  // namespace goshawk::closed_loop

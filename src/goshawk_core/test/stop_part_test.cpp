@@ -1,4 +1,4 @@
-#include "goshawk/navigator/stop_part.hpp"
+#include "goshawk/core/stop_part.hpp"
 
 #include <gmock/gmock.h>
 
@@ -9,7 +9,7 @@
 #include "goshawk/core/inflation.hpp"
 #include "goshawk/core/random.hpp"
 
-namespace goshawk::navigator {
+namespace goshawk::stops {
 namespace {
 
 constexpr Index3 kSize{100, 50, 20};
@@ -211,4 +211,4 @@ TEST(LatestStop, WithoutRoomToBrakeThePlaceIsNamed) {
 }
 
 }  // namespace
-}  // namespace goshawk::navigator
+}  // namespace goshawk::stops

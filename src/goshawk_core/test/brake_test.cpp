@@ -1,19 +1,19 @@
-#include "goshawk/navigator/brake.hpp"
+#include "goshawk/core/brake.hpp"
 
-#include "harness.hpp"
+#include <gtest/gtest.h>
 
-namespace goshawk::navigator {
+namespace goshawk::stops {
 namespace {
 
 constexpr double kFast_m_s = 2.0;
+const Vec3 kHome(0, 0, 1);
 
 CommittedTrajectory committed(Trajectory trajectory, std::vector<Polytope> polytopes,
                               double a_max_m_s2 = 6.0) {
   const FlatState start = trajectory.sample(0.0);
   const FlatState end = trajectory.sample(trajectory.duration_s());
   const Limits limits{.v_max_m_s = 3.0 * kFast_m_s, .a_max_m_s2 = a_max_m_s2};
-  auto certified =
-      certify(std::move(trajectory), std::move(polytopes), limits, start, end).value();
+  auto certified = certify(std::move(trajectory), std::move(polytopes), limits, start, end).value();
   return CommittedTrajectory::make(
              {.id = 7, .nominal = std::move(certified), .start_time_ns = 0, .map_version = 3})
       .value();
@@ -49,7 +49,8 @@ TEST(Brake, ComesToRestOnThePathWithinPolytopesAndLimitsFromAnyMoment) {
     const Trajectory& trajectory = way->trajectory();
     EXPECT_LT(largest_difference(trajectory.sample(0.0), flown.flown().sample(from_s)), 1e-9);
     EXPECT_TRUE(way->ends_at_rest());
-    EXPECT_LT(trajectory.duration_s(), flown.flown().duration_s() - from_s) << "sooner than by itself";
+    EXPECT_LT(trajectory.duration_s(), flown.flown().duration_s() - from_s)
+        << "sooner than by itself";
     for (int i = 0; i <= 40; ++i) {
       const FlatState s = trajectory.sample(trajectory.duration_s() * i / 40);
       EXPECT_LT(distance_to(flown.flown(), s.position), 1e-3);
@@ -97,16 +98,15 @@ TEST(Brake, LeavesATrajectoryWithAStopPartAlongThatPart) {
   const FlatState left = nominal.sample(3.0);
   const FlatState rest{.position = left.position + Vec3(2.0, 0, 0)};
   const Trajectory stop{{BezierPiece::between(left, rest, 3.0)}};
-  const auto flown =
-      CommittedTrajectory::make(
-          {.id = 7,
-           .nominal = certify(nominal, room, limits, start, end).value(),
-           .stop = StopPart{3.0, certify(stop, room, limits, left, rest).value()}})
-          .value();
+  const auto flown = CommittedTrajectory::make(
+                         {.id = 7,
+                          .nominal = certify(nominal, room, limits, start, end).value(),
+                          .stop = StopPart{3.0, certify(stop, room, limits, left, rest).value()}})
+                         .value();
   const auto way = brake_along(flown, 3.2);
   ASSERT_TRUE(way) << way.error().message;
   EXPECT_LT(way->trajectory().sample(way->duration_s()).position.x(), rest.position.x());
 }
 
 }  // namespace
-}  // namespace goshawk::navigator
+}  // namespace goshawk::stops

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace goshawk::navigator {
+namespace goshawk {
 namespace {
 
 constexpr double kKnot_s = 0.1;  // longest piece
@@ -114,4 +114,4 @@ Result<CertifiedTrajectory> certify_slowed(const SlowedPath& path, const TimeLaw
   return certify(std::move(slowed), std::move(used), limits, path.start(), end);
 }
 
-}  // namespace goshawk::navigator
+}  // namespace goshawk

@@ -1,4 +1,4 @@
-#include "goshawk/navigator/brake.hpp"
+#include "goshawk/core/brake.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 
 #include "slowing.hpp"
 
-namespace goshawk::navigator {
+namespace goshawk {
 namespace {
 
 constexpr double kRamp_s = 0.3;  // of the deceleration, to its full value and back
@@ -35,4 +35,4 @@ Result<CertifiedTrajectory> brake_along(const CommittedTrajectory& committed, do
                           committed.id(), from_s));
 }
 
-}  // namespace goshawk::navigator
+}  // namespace goshawk

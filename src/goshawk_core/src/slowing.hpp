@@ -2,7 +2,7 @@
 
 #include "goshawk/core/certified_trajectory.hpp"
 
-namespace goshawk::navigator {
+namespace goshawk {
 
 /// How fast a path's own time passes, and how far it has come, over real time since the start of
 /// braking. The rate goes from one to zero as the integral of a trapezoid, so that the acceleration
@@ -46,7 +46,8 @@ class SlowedPath {
   FlatState start() const { return at({0.0, 1.0, 0.0}); }
   /// Quintics between its states: they leave the path by some 0.1 um. Each is in the polytope that
   /// the path is in there. @pre law.passes_s() < left_s()
-  /// @param cut_at_ramps pieces end where the deceleration has risen and where it begins to fall: on
+  /// @param cut_at_ramps pieces end where the deceleration has risen and where it begins to fall:
+  /// on
   ///   a straight line at constant speed they are then exact, and none exceeds its limit
   Trajectory by(const TimeLaw& law, bool cut_at_ramps = false) const;
 
@@ -67,4 +68,4 @@ Result<CertifiedTrajectory> certify_slowed(const SlowedPath& path, const TimeLaw
                                            Trajectory slowed, std::vector<Polytope> polytopes,
                                            double from_s, const Limits& limits);
 
-}  // namespace goshawk::navigator
+}  // namespace goshawk

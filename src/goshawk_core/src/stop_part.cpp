@@ -1,4 +1,4 @@
-#include "goshawk/navigator/stop_part.hpp"
+#include "goshawk/core/stop_part.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include "goshawk/core/free_curve.hpp"
 #include "slowing.hpp"
 
-namespace goshawk::navigator {
+namespace goshawk {
 namespace {
 
 constexpr double kGentleRamp_s = 0.3;
@@ -129,4 +129,4 @@ Result<std::optional<StopPart>> latest_stop(const CertifiedTrajectory& nominal,
                           free_until_s, what));
 }
 
-}  // namespace goshawk::navigator
+}  // namespace goshawk

@@ -4,7 +4,7 @@
 
 #include "goshawk/core/committed_trajectory.hpp"
 
-namespace goshawk::navigator {
+namespace goshawk {
 
 /// A way to rest along the path of a committed trajectory: the same curve, in the same polytopes,
 /// ever slower. As soon as the limits of that trajectory allow.
@@ -21,4 +21,4 @@ Result<CertifiedTrajectory> brake_along(
     const CommittedTrajectory& committed, double from_s,
     const std::function<bool(const Trajectory&)>& is_free = [](const Trajectory&) { return true; });
 
-}  // namespace goshawk::navigator
+}  // namespace goshawk

@@ -5,7 +5,7 @@
 #include "goshawk/core/committed_trajectory.hpp"
 #include "goshawk/core/free_space.hpp"
 
-namespace goshawk::navigator {
+namespace goshawk {
 
 /// The stop part that a nominal part needs in a space: it leaves the nominal part as late as the
 /// space allows, brakes along its path as hard as the limits allow, and ends at rest. Everything
@@ -23,4 +23,4 @@ Result<std::optional<StopPart>> latest_stop(const CertifiedTrajectory& nominal,
 
 inline constexpr double kStopStep_s = 0.02;
 
-}  // namespace goshawk::navigator
+}  // namespace goshawk

@@ -1,0 +1,52 @@
+#include "goshawk/closed_loop/planning.hpp"
+
+#include <ctime>
+
+namespace goshawk::closed_loop {
+
+double processor_time_s(const std::function<void()>& work) {
+  const auto now_s = [] {
+    timespec t{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
+  };
+  const double begin_s = now_s();
+  work();
+  return now_s() - begin_s;
+}
+
+Result<Planning> Planning::create(const Config& config) {
+  auto search = path_search::PathSearch::create(config.search);
+  if (!search) return search.error();
+  auto builder = corridor_builder::CorridorBuilder::create(config.corridor);
+  if (!builder) return builder.error();
+  auto optimizer = trajectory_optimizer::TrajectoryOptimizer::create(config.optimizer);
+  if (!optimizer) return optimizer.error();
+  return Planning(*std::move(search), *std::move(builder), *std::move(optimizer));
+}
+
+void Planning::set_map(std::shared_ptr<const VoxelGrid> map) {
+  map_ = std::move(map);
+  search_.set_map(map_);
+}
+
+Planning::Answer Planning::plan(const PlanRequest& request) {
+  const auto path = search_.plan(request);
+  if (!path) return {path.error(), StageRole::path_search};
+  const double moved_m = path->goal_moved_m;
+  const auto corridor = builder_.build(*map_, path->waypoints_map);
+  if (!corridor) return {corridor.error(), StageRole::corridor_builder, moved_m};
+  // As the search moved the ends, if it did.
+  PlanRequest moved = request;
+  if (path->start_moved_m > 0.0) moved.start.position = path->waypoints_map.front();
+  moved.goal.position = path->waypoints_map.back();
+  auto solution = optimizer_.optimise(moved, *corridor);
+  if (!solution) return {solution.error(), StageRole::trajectory_optimizer, moved_m};
+  return {Commitment{.id = request.id,
+                     .nominal = std::move(solution->certified),
+                     .map_version = map_->version,
+                     .yaw_curve = std::move(solution->yaw)},
+          StageRole::trajectory_optimizer, moved_m};
+}
+
+}  // namespace goshawk::closed_loop
