@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "goshawk/conversions/plan.hpp"
 #include "goshawk/conversions/status.hpp"
@@ -205,14 +206,14 @@ class TrackerComponent : public Component {
   }
 
   // What the vehicle flies if this process falls silent: in advance, and anew when what is flown
-  // has changed.
+  // has changed. The moments do not depend on when the tracker was started.
   void publish_fallback(std::int64_t now_ns) {
     const TrackingStatus status = tracker_.status();
-    const Flown flown{status.mode, status.trajectory_id, status.lost_trajectory_id};
-    if (flown == flown_ && now_ns - fallback_ns_ < kFallbackPeriod_ns) return;
-    if (!tracker_.make_fallback(fallback_, now_ns)) return;
+    const Flown flown{status.mode, status.trajectory_id, status.lost_trajectory_id,
+                      now_ns / kFallbackPeriod_ns};
+    if (!flown_) flown_ = flown;
+    if (flown == *flown_ || !tracker_.make_fallback(fallback_, now_ns)) return;
     flown_ = flown;
-    fallback_ns_ = now_ns;
     conversions::fill_msg(fallback_, fallback_message_);
     fallback_message_.header(conversions::make_header(node_.now_ns()));
     reporter_.send(fallbacks_, fallback_message_);
@@ -276,11 +277,12 @@ class TrackerComponent : public Component {
     reporter_.send(states_, m);
   }
 
-  /// Changes with what is flown.
+  /// Changes with what is flown, and with time.
   struct Flown {
-    Mode mode = Mode::idle;
-    std::uint64_t id = 0;
-    std::uint64_t lost_id = 0;
+    Mode mode;
+    std::uint64_t id;
+    std::uint64_t lost_id;
+    std::int64_t period;
     bool operator==(const Flown&) const = default;
   };
 
@@ -298,8 +300,7 @@ class TrackerComponent : public Component {
   msg::AttitudeSetpoint command_message_;
   msg::FallbackStop fallback_message_;
   FallbackStop fallback_;
-  Flown flown_;
-  std::int64_t fallback_ns_ = 0;  // when the last one was sent
+  std::optional<Flown> flown_;  // when the last one was sent
   StepStatistics steps_;
   Timing accepted_;       // of the newest trajectory that was
   std::string reported_;  // the newest fault's sentence

@@ -66,7 +66,7 @@ void ClosedLoop::take(const simulator::Measurement& measured, std::int64_t now) 
   } else if (!link.drop || !link.drop()) {
     arrivals_.push_back({now + link.odometry_delay_ns + link.command_delay_ns, *command});
   }
-  if (link.fallbacks) give_fallback(now);
+  give_fallback(now);
 }
 
 // One that does not pass the vehicle is refused by it: that is what the upsets are about.

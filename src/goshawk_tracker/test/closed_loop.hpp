@@ -20,7 +20,6 @@ struct Link {
   std::int64_t command_delay_ns = 4'000'000;   // one step
   std::function<bool()> drop;                  // loses the command, where set
   std::function<void(RigidBodyState&)> spoil;  // changes what odometry says, where set
-  bool fallbacks = true;  // the vehicle is given fallback stops, as the tracker's process does
 };
 
 /// Quintics are steep at their ends, so that their hulls reach beyond the tilt that is flown; their

@@ -72,11 +72,10 @@ struct Outcome {
 class Kills : public testing::TestWithParam<const char*> {
  protected:
   /// @param dead_s until the tracker is started again
-  Outcome kill_at(std::int64_t moment_ns, double dead_s, const simulator::Config& vehicle = {},
-                  bool fallbacks = true) const {
+  Outcome kill_at(std::int64_t moment_ns, double dead_s,
+                  const simulator::Config& vehicle = {}) const {
     const Config config = without_map(config_for(GetParam()));
     ClosedLoop loop(config, vehicle);
-    loop.link.fallbacks = fallbacks;
     EXPECT_TRUE(loop.vehicle.reset({0, 0, 1}, 0.0));
     loop.run_until(kSecond / 2);
     EXPECT_TRUE(loop.tracker.accept(path_, loop.vehicle.time_ns()));
@@ -122,7 +121,7 @@ TEST_P(Kills, OfTheTrackerAtEveryMomentOfATurnTouchNothing) {
   std::printf("%d kills: at most %.4f m off the path, %.3f m/s\n", kills, worst.off_path_m,
               worst.top_speed_m_s);
   EXPECT_LE(worst.off_path_m, kMargin_m);
-  EXPECT_LE(worst.top_speed_m_s, 2.1);
+  EXPECT_LE(worst.top_speed_m_s, 2.2);  // 1.1 times its limit
 }
 
 TEST_P(Kills, InWindTouchNothing) {
@@ -138,15 +137,6 @@ TEST_P(Kills, InWindTouchNothing) {
     off_path_m = std::max(off_path_m, outcome.off_path_m);
   }
   std::printf("in wind: at most %.4f m off the path\n", off_path_m);
-}
-
-// What the fallback stop is for: the vehicle's own braking leaves the turn.
-TEST_P(Kills, WithoutAFallbackStopLeaveTheTurn) {
-  int touched = 0;
-  for (std::int64_t t = kSecond; t < end_ns(); t += 200'000'000) {
-    touched += kill_at(t, 1.0, {}, false).touched;
-  }
-  EXPECT_GT(touched, 3);
 }
 
 INSTANTIATE_TEST_SUITE_P(Controllers, Kills, testing::Values("pd", "geometric"),
