@@ -12,7 +12,7 @@ def levels(text):
     """{package: level} from the page's list, whose lines may continue without a level."""
     found, level = {}, None
     for line in text.splitlines():
-        match = re.match(r"    (?:L(\d)\s+)?([a-z_ ]+)$", line)
+        match = re.match(r"    (?:L(\d)\s+)?([a-z0-9_ ]+)$", line)
         if not match:
             continue
         level = int(match.group(1)) if match.group(1) else level
@@ -45,14 +45,14 @@ def includes(package):
     for path in folder.rglob("*.[ch]pp"):
         if "test" in path.relative_to(folder).parts:
             continue
-        found |= set(re.findall(r'#include "goshawk/([a-z_]+)/', path.read_text()))
+        found |= set(re.findall(r'#include "goshawk/([a-z0-9_]+)/', path.read_text()))
     return found - {package}
 
 
 def components():
     """{component: the package that has it}"""
     return {name: short(path.parent.name) for path in ROOT.glob("src/*/CMakeLists.txt")
-            for name in re.findall(r"goshawk_component\(NAME ([a-z_]+)", path.read_text())}
+            for name in re.findall(r"goshawk_component\(NAME ([a-z0-9_]+)", path.read_text())}
 
 
 class LevelsTest(unittest.TestCase):
@@ -89,7 +89,7 @@ class LevelsTest(unittest.TestCase):
         owners = components()
         for path in ROOT.glob("src/goshawk_*/launch/*.yaml"):
             package = short(path.parts[-3])
-            used = set(re.findall(r"component: *([a-z_]+)", path.read_text()))
+            used = set(re.findall(r"component: *([a-z0-9_]+)", path.read_text()))
             needed = {owners[component] for component in used} - {package}
             self.assertEqual(needed - self.reachable(package), set(), path)
 

@@ -115,11 +115,10 @@ double FlightLab::timed_s(const std::function<void()>& work) {
 void FlightLab::obey(const PlanRequest& request) {
   ++plans_;
   if (!planning_lives_) return;
-  std::optional<Planning::Answer> planned;
-  const double computed_s = timed_s([&] { planned.emplace(planning_.plan(request)); });
-  in(delay_s(computed_s), [this, request, planned = *std::move(planned), computed_s] {
-    answer(request, planned, computed_s);
-  });
+  auto planned =
+      planning_.plan(request, [this](const std::function<void()>& work) { return timed_s(work); });
+  const double delay = delay_s(planned.times.all_s());
+  in(delay, [this, request, planned = std::move(planned)] { answer(request, planned); });
 }
 
 double FlightLab::delay_s(double computed_s) {
@@ -130,7 +129,7 @@ double FlightLab::delay_s(double computed_s) {
          (late ? random_.uniform(0.0, d.late_s) : 0.0);
 }
 
-void FlightLab::answer(const PlanRequest& request, Planning::Answer planned, double computed_s) {
+void FlightLab::answer(const PlanRequest& request, Planning::Answer planned) {
   const double checked_s = timed_s([&] {
     if (planned.last != StageRole::path_search) {
       navigator_.on_report(request.id, StageRole::path_search, Error{ErrorCode::ok, ""}, now_ns(),
@@ -143,7 +142,7 @@ void FlightLab::answer(const PlanRequest& request, Planning::Answer planned, dou
       navigator_.on_report(request.id, planned.last, planned.commitment.error(), now_ns());
     }
   });
-  if (setup_.delays.stopwatch) computed_s_.push_back(computed_s + checked_s);
+  if (setup_.delays.stopwatch) replans_.push_back({planned.times, checked_s});
   take_orders();
 }
 

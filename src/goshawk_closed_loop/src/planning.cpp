@@ -1,6 +1,7 @@
 #include "goshawk/closed_loop/planning.hpp"
 
 #include <ctime>
+#include <optional>
 
 namespace goshawk::closed_loop {
 
@@ -30,23 +31,28 @@ void Planning::set_map(std::shared_ptr<const VoxelGrid> map) {
   search_.set_map(map_);
 }
 
-Planning::Answer Planning::plan(const PlanRequest& request) {
-  const auto path = search_.plan(request);
-  if (!path) return {path.error(), StageRole::path_search};
-  const double moved_m = path->goal_moved_m;
-  const auto corridor = builder_.build(*map_, path->waypoints_map);
-  if (!corridor) return {corridor.error(), StageRole::corridor_builder, moved_m};
+Planning::Answer Planning::plan(const PlanRequest& request, const Stopwatch& stopwatch) {
+  Times times;
+  std::optional<Result<path_search::PlannedPath>> path;
+  times.search_s = stopwatch([&] { path.emplace(search_.plan(request)); });
+  if (!*path) return {path->error(), StageRole::path_search, 0.0, times};
+  const double moved_m = (*path)->goal_moved_m;
+  const std::vector<Vec3>& waypoints = (*path)->waypoints_map;
+  std::optional<Result<Corridor>> corridor;
+  times.corridor_s = stopwatch([&] { corridor.emplace(builder_.build(*map_, waypoints)); });
+  if (!*corridor) return {corridor->error(), StageRole::corridor_builder, moved_m, times};
   // As the search moved the ends, if it did.
   PlanRequest moved = request;
-  if (path->start_moved_m > 0.0) moved.start.position = path->waypoints_map.front();
-  moved.goal.position = path->waypoints_map.back();
-  auto solution = optimizer_.optimise(moved, *corridor);
-  if (!solution) return {solution.error(), StageRole::trajectory_optimizer, moved_m};
+  if ((*path)->start_moved_m > 0.0) moved.start.position = waypoints.front();
+  moved.goal.position = waypoints.back();
+  std::optional<Result<trajectory_optimizer::Solution>> solution;
+  times.optimizer_s = stopwatch([&] { solution.emplace(optimizer_.optimise(moved, **corridor)); });
+  if (!*solution) return {solution->error(), StageRole::trajectory_optimizer, moved_m, times};
   return {Commitment{.id = request.id,
-                     .nominal = std::move(solution->certified),
+                     .nominal = std::move((*solution)->certified),
                      .map_version = map_->version,
-                     .yaw_curve = std::move(solution->yaw)},
-          StageRole::trajectory_optimizer, moved_m};
+                     .yaw_curve = std::move((*solution)->yaw)},
+          StageRole::trajectory_optimizer, moved_m, times};
 }
 
 }  // namespace goshawk::closed_loop

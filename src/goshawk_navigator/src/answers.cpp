@@ -15,8 +15,8 @@ namespace {
 
 // A failure is believed after this time: a good answer may still come.
 constexpr double kDoubt_s = 0.1;
-// A trajectory that was flown for so long did not fail at once.
-constexpr double kFlown_s = 1.0;
+// Failures of trajectories in flight that lie so far apart are not added up.
+constexpr double kApart_s = 1.0;
 
 // About one request; the sentence of its end counts them all.
 constexpr int kMostComplaints = 3;
@@ -145,7 +145,9 @@ void Navigator::on_tracker_report(std::uint64_t id, const Error& outcome, std::i
   // A later stop that is not taken leaves the earlier one, which leads to the same goal; one that
   // gave way to an even later stop leaves that.
   if (schedule_.drop_later_stop(id)) return say_what_is_flown(now_ns);
-  if (now_ns - leg->start_ns() > to_ns(kFlown_s)) pursuit_.failures = 0;
+  const bool flew = std::ranges::any_of(schedule_.legs(), &Leg::accepted);
+  if (flew && now_ns - pursuit_.lost_ns > to_ns(kApart_s)) pursuit_.failures = 0;
+  pursuit_.lost_ns = now_ns;
   left_ = Left{*leg, now_ns, !pursuit_.open};
   if (leg->accepted) {
     lost_id_ = id;

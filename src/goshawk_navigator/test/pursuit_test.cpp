@@ -1,4 +1,5 @@
-// The newest goal is pursued from other starts, then from rest, and the revoked one is not flown to.
+// The newest goal is pursued from other starts, then from rest, and the revoked one is not flown
+// to.
 #include "harness.hpp"
 
 namespace goshawk::navigator {
@@ -207,6 +208,28 @@ TEST(Pursuit, ATrajectoryThatTheTrackerRefusesAndThenFollowsIsFlown) {
   EXPECT_EQ(h.last().flown_id, id);
   h.pass(4.0);
   EXPECT_EQ(h.last().state, State::arrived);
+}
+
+// A long flight through a world that unfolds may lose many trajectories, each for a new reason.
+TEST(Pursuit, LossesThatLieApartAreNotAddedUpThoseOfOneMomentAre) {
+  Config config = wide();
+  config.max_attempts = 3;
+  Harness h(config);
+  h.goal(kGoal);
+  for (int k = 0; k < 6; ++k) {
+    h.answer();
+    h.tracker_says(h.commits.back().id(), ok());
+    h.pass(0.5);
+    h.tracker_says(h.commits.back().id(), {ErrorCode::tracking_lost, "0.06 m away"});
+    h.pass(k == 0 ? 4.0 : 0.8);  // at first until it rests at the goal, where it stays
+    ASSERT_EQ(h.last().state, State::planning) << k;
+  }
+  for (int k = 0; k < 3 && h.last().state == State::planning; ++k) {
+    h.answer();
+    h.tracker_says(h.commits.back().id(), {ErrorCode::not_at_start, "0.1 m away"});
+    h.pass(0.3);
+  }
+  EXPECT_EQ(h.last().state, State::failed);
 }
 
 }  // namespace

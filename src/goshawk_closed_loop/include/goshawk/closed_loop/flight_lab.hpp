@@ -25,6 +25,13 @@ struct Delays {
   Stopwatch stopwatch = {};
 };
 
+/// What a plan took [s].
+struct Replan {
+  Planning::Times stages;
+  double check_s = 0.0;  // of its answer, in the navigator: stop part and proof
+  double all_s() const { return stages.all_s() + check_s; }
+};
+
 /// What is flown, and how.
 struct Setup {
   navigator::Config navigator = {};
@@ -77,8 +84,8 @@ class FlightLab {
 
   int plans() const { return plans_; }
   int commits() const { return commits_; }
-  /// [s] what each plan took, and the check of its answer; only with a stopwatch
-  const std::vector<double>& computed_s() const { return computed_s_; }
+  /// What each plan took; only with a stopwatch.
+  const std::vector<Replan>& replans() const { return replans_; }
   int contacts() const { return contacts_; }  // milliseconds in which the body touches
   double max_error_m() const { return max_error_m_; }
   double max_speed_m_s() const { return max_speed_m_s_; }
@@ -106,7 +113,7 @@ class FlightLab {
   void obey(const navigator::Commit& commit);
   void obey(const navigator::Complaint&) {}
   void obey(const navigator::StateOrder& state) { state_ = state; }
-  void answer(const PlanRequest& request, Planning::Answer planned, double computed_s);
+  void answer(const PlanRequest& request, Planning::Answer planned);
   double delay_s(double computed_s);
   double timed_s(const std::function<void()>& work);
   void report_tracker();
@@ -128,7 +135,7 @@ class FlightLab {
   std::int64_t busy_until_ns_ = 0;  // the planning stages
   int plans_ = 0;
   int commits_ = 0;
-  std::vector<double> computed_s_;
+  std::vector<Replan> replans_;
   int contacts_ = 0;
   double max_error_m_ = 0.0;
   double max_speed_m_s_ = 0.0;

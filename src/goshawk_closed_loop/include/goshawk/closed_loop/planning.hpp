@@ -28,10 +28,16 @@ class Planning {
     corridor_builder::Config corridor;
     trajectory_optimizer::Config optimizer;
   };
+  /// [s] as a stopwatch says
+  struct Times {
+    double search_s = 0.0, corridor_s = 0.0, optimizer_s = 0.0;
+    double all_s() const { return search_s + corridor_s + optimizer_s; }
+  };
   struct Answer {
     Result<Commitment> commitment;
     StageRole last;  // the stage that made it, or failed
     double goal_moved_m = 0.0;
+    Times times = {};
   };
 
   /// @return invalid_parameter with the faults of the first stage that has any
@@ -39,7 +45,7 @@ class Planning {
 
   /// @pre grid->check() ok
   void set_map(std::shared_ptr<const VoxelGrid> map);
-  Answer plan(const PlanRequest& request);
+  Answer plan(const PlanRequest& request, const Stopwatch& stopwatch);
   path_search::PathSearch& search() { return search_; }
 
  private:

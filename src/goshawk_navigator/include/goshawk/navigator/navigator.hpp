@@ -141,9 +141,10 @@ class Navigator {
   };
   struct Pursuit {  // of the newest goal
     Goal goal;
-    bool open = false;  // no committed trajectory leads to it yet
-    int failures = 0;   // that only time can mend
-    int starts = 0;     // that did not do
+    bool open = false;         // no committed trajectory leads to it yet
+    int failures = 0;          // that only time can mend
+    std::int64_t lost_ns = 0;  // when the tracker last said that it does not fly one
+    int starts = 0;            // that did not do
     double lead_s = 0.0;
     std::int64_t not_before_ns = 0;  // the next start
     std::int64_t retry_ns = 0;
