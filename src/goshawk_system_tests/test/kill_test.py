@@ -81,8 +81,9 @@ class KillNine(LegsCase):
         self.check_untouched()
 
     def test_7_tracker(self):
-        """The vehicle flies the fallback stop that it was given. The new tracker finds it elsewhere
-        than the trajectory is and refuses that, so the navigator plans anew: the goal is reached."""
+        """The vehicle flies the fallback stop that it was given. The new tracker finds it
+        elsewhere than the trajectory is and refuses that, so the navigator plans anew: the goal is
+        reached."""
         goal, since = self.start_leg()
         self.kill("tracker")
         state = self.stack.wait_state({"arrived", "failed"}, since, 40.0)

@@ -16,7 +16,7 @@ namespace {
 const Error kNoFault{ErrorCode::ok, ""};
 constexpr double kSayStall_s = 1.0;
 constexpr double kLongestWait_s = 5.0;  // for a vehicle to come to rest by itself
-constexpr double kSlow_m_s = 0.4;  // a landing, or nearly at rest: it is stopped within 0.2 m
+constexpr double kSlow_m_s = 0.4;       // a landing, or nearly at rest: it is stopped within 0.2 m
 // Beyond these no odometry is true, and squares of it would not be finite.
 constexpr double kFarthest_m = 1e6;
 constexpr double kFastest_m_s = 1e3;
