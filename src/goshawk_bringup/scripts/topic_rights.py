@@ -21,6 +21,11 @@ STAGES = {
                             "tracking_state"],
                   "writes": ["plan_request", "committed_trajectory", "navigator_state",
                              "navigator_alive"]},
+    # In the navigator's place, for another planner's plans.
+    "guard": {"reads": [*MAP, "plan/path", "plan/trajectory", "plan/polynomial", "plan/bspline",
+                        "odom", "tracking_state", "stage_report"],
+              "writes": ["committed_trajectory", "guard_verdict", "navigator_state",
+                         "navigator_alive"]},
     "tracker": {"reads": [*MAP, "committed_trajectory", "odom", "navigator_alive",
                           "stage_report"],
                 "writes": ["command", "fallback_stop", "tracking_state"]},

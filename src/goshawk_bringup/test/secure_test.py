@@ -87,7 +87,11 @@ class Made(unittest.TestCase):
             for topic in self.rights(name)[1]:
                 writers.setdefault(topic, []).append(name)
         several = {t for t, names in writers.items() if len(names) > 1}
-        self.assertEqual(several, {"rt/uav1/stage_report", "rt/parameter_answer"})
+        # The guard stands in the navigator's place: a launch has one of them.
+        of_either = {t for t in several if set(writers[t]) == {"navigator", "guard"}}
+        self.assertEqual(of_either, {f"rt/uav1/{topic}" for topic in (
+            "committed_trajectory", "navigator_state", "navigator_alive")})
+        self.assertEqual(several - of_either, {"rt/uav1/stage_report", "rt/parameter_answer"})
 
     def test_a_remapped_topic_is_one_that_the_stage_has_a_right_to(self):
         table, remapped = topic_rights.roles(), 0
@@ -106,6 +110,15 @@ class Made(unittest.TestCase):
         advertised = set(re.findall(r'advertise<[^"]*>\("([^"]+)"', source))
         self.assertIn("points", advertised)
         self.assertEqual(set(topic_rights.STAGES["sensors"]["writes"]), advertised)
+
+    def test_the_guard_opens_what_its_component_names_and_no_more(self):
+        source = (SCRIPTS.parents[1] / "goshawk_guard/component/guard_component.cpp").read_text()
+        advertised = set(re.findall(r'advertise<[^"]*>\("([^"]+)"', source))
+        heard = set(re.findall(r'(?:subscribe|listen)<[^"]*>\(\s*"([^"]+)"', source))
+        self.assertIn("plan/path", heard)
+        self.assertEqual(set(topic_rights.STAGES["guard"]["writes"]), advertised)
+        self.assertEqual(set(topic_rights.STAGES["guard"]["reads"]),
+                         heard | set(topic_rights.MAP))
 
     def test_governance_admits_nobody_without_a_certificate(self):
         rule = self.document(self.folder / "authority" / "governance.smime").find(

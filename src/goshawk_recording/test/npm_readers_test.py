@@ -52,7 +52,7 @@ def main():
             with open(lines, "wb") as out:
                 subprocess.run([dump, recording], check=True, stdout=out)
             done = subprocess.run(["node", folder / "read_recording.mjs", recording, lines],
-                                  timeout=120)
+                                  timeout=600)
             if done.returncode != 0:
                 sys.exit(f"{recording}: read otherwise than by Goshawk")
 

@@ -145,6 +145,7 @@ void add_bench(Program& program) {
   add_plain(bench, "corridor", "corridor generators: time, volume, faces, obstacles cut");
   add_map(bench);
   add_plain(bench, "updates", "what an update of a large map costs each stage that follows it");
+  add_plain(bench, "guard", "what it costs to make another planner's plan safe");
   add_plain(bench, "replan", "what it takes to plan again in a forest that unfolds");
   add_plain(bench, "trajectory", "planners: durations, speeds, optimisation and whole plans");
   add_plain(bench, "sensors", "simulated lidars and cameras: what a ray costs in each world");
