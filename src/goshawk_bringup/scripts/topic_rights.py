@@ -17,10 +17,12 @@ STAGES = {
     "path_search": {"reads": [*MAP, "plan_request"], "writes": ["path"]},
     "corridor_builder": {"reads": [*MAP, "plan_request", "path"], "writes": ["corridor"]},
     "trajectory_optimizer": {"reads": ["plan_request", "corridor"], "writes": ["trajectory"]},
-    "navigator": {"reads": [*MAP, "goal_pose", "odom", "trajectory", "stage_report",
-                            "tracking_state"],
+    "navigator": {"reads": [*MAP, "goal_pose", "goal", "operator_command", "odom", "trajectory",
+                            "stage_report", "tracking_state"],
                   "writes": ["plan_request", "committed_trajectory", "navigator_state",
-                             "navigator_alive"]},
+                             "navigator_alive", "operator_answer"]},
+    "mission": {"reads": ["mission", "operator_command", "navigator_state", "odom"],
+                "writes": ["goal", "mission_state", "operator_answer"]},
     # In the navigator's place, for another planner's plans.
     "guard": {"reads": [*MAP, "plan/path", "plan/trajectory", "plan/polynomial", "plan/bspline",
                         "odom", "tracking_state", "stage_report"],
@@ -40,9 +42,10 @@ STAGES = {
 }
 # They are no stages: they report nothing.
 PEOPLE = {
-    "viewer": {"reads": ALL, "writes": ["goal_pose"]},
+    "viewer": {"reads": ALL, "writes": ["goal_pose", "operator_command"]},
     "recorder": {"reads": ALL, "writes": []},
-    "operator": {"reads": ALL, "writes": ["goal_pose", "/parameter_request"]},
+    "operator": {"reads": ALL, "writes": ["goal_pose", "goal", "mission", "operator_command",
+                                          "/parameter_request"]},
 }
 COMPONENTS = {"simulator": "vehicle", "mujoco": "vehicle", "viewer_bridge": "viewer",
               "baseline_optimizer": "trajectory_optimizer"}

@@ -114,6 +114,18 @@ Navigator::Start Navigator::start_at_rest(std::int64_t now_ns) const {
           .yaw_rate_rad_s = (vehicle_.q_map_base * vehicle_.angular_velocity_base).z()};
 }
 
+// The parameters', or the goal's own speed limit if that is lower.
+Limits Navigator::limits_from(const Start& start) const {
+  Limits limits = start.time_ns ? config_.limits_in_flight() : config_.limits();
+  const double own_m_s = pursuit_.goal.v_max_m_s;
+  if (own_m_s <= 0.0) return limits;
+  limits.v_max_m_s = std::min(limits.v_max_m_s, own_m_s);
+  if (limits.v_max_vertical_m_s > 0.0) {
+    limits.v_max_vertical_m_s = std::min(limits.v_max_vertical_m_s, own_m_s);
+  }
+  return limits;
+}
+
 void Navigator::ask(const Start& start, std::int64_t now_ns) {
   newest_id_ = next_id_++;
   open(start, newest_id_, now_ns);
@@ -130,7 +142,7 @@ void Navigator::open(const Start& start, std::uint64_t id, std::int64_t now_ns) 
   request.start_yaw_rate_rad_s = start.yaw_rate_rad_s;
   request.goal.position = pursuit_.goal.position_map;
   request.goal_yaw_rad = pursuit_.goal.yaw_rad;
-  request.limits = start.time_ns ? config_.limits_in_flight() : config_.limits();
+  request.limits = limits_from(start);
   request.deadline_s = config_.plan_timeout_s;
   request.supersedes = std::exchange(dropped_id_, 0);
   request.unknown = config_.unknown;

@@ -6,7 +6,8 @@ import re
 import harness
 from calls_case import DONE, NOT_DONE, WRONG_CALL, CallsCase
 
-ALL_VERBS = ["plan", "fly", "check", "world", "campaign", "launch", "goto", "hold", "view", "run",
+ALL_VERBS = ["plan", "fly", "check", "world", "campaign", "launch", "goto", "hold", "resume",
+             "land", "takeoff", "mission", "why", "view", "run",
              "bench plan", "bench search", "bench scenario", "bench stage", "bench dds", "bench corridor",
              "bench trajectory", "bench guard", "bench replan", "bench updates", "bench tracking", "bench map",
              "bench sensors", "conform", "record", "replay", "bag record", "bag play", "bag info",
@@ -75,6 +76,12 @@ class BadCalls(CallsCase):
                 (["goto", "1,2"], WRONG_CALL, "invalid_parameter"),
                 (["goto", "1,2,3", "--ready", "0.2"], NOT_DONE, "stage_silent"),
                 (["hold", "--namespace", "a b"], WRONG_CALL, "invalid_parameter"),
+                (["resume", "--ready", "0.2"], NOT_DONE, "stage_silent"),
+                (["land", "--ready", "0.2"], NOT_DONE, "stage_silent"),
+                (["takeoff", "--height", "0"], WRONG_CALL, "invalid_parameter"),
+                (["mission", "/no.yaml"], NOT_DONE, "io_failed"),
+                (["why", "/no.mcap"], NOT_DONE, "io_failed"),
+                (["mission", "--ready", "0.2"], NOT_DONE, "stage_silent"),
                 (["bag", "play", "/no.mcap"], NOT_DONE, "io_failed"),
                 (["bag", "info", "/no.mcap"], NOT_DONE, "io_failed"),
                 (["interface", "show", "goshawk_msgs/msg/Pth"], WRONG_CALL, "invalid_parameter"),
