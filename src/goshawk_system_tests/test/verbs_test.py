@@ -8,8 +8,8 @@ from calls_case import DONE, NOT_DONE, WRONG_CALL, CallsCase
 
 ALL_VERBS = ["plan", "fly", "check", "world", "campaign", "launch", "goto", "hold", "view", "run",
              "bench plan", "bench search", "bench scenario", "bench stage", "bench dds", "bench corridor",
-             "bench trajectory", "bench guard", "bench replan", "bench updates", "bench tracking", "bench map",
-             "bench sensors", "conform", "record", "replay", "bag record", "bag play", "bag info",
+             "bench trajectory", "bench guard", "bench replan", "bench updates", "bench tracking",
+             "bench map", "bench sensors", "conform", "record", "replay", "bag record", "bag play", "bag info",
              "map info", "map save", "map crop", "map merge", "map diff", "sense check",
              "interface list", "interface show", "topic list", "topic info", "topic type",
              "topic find", "topic echo", "topic hz", "topic delay", "topic bw", "topic pub",
