@@ -76,8 +76,9 @@ class Made(unittest.TestCase):
     def test_rights_are_the_least(self):
         reads, writes = self.rights("tracker")
         self.assertIn("rt/uav1/committed_trajectory", reads)
-        self.assertEqual(writes, {"rt/uav1/command", "rt/uav1/tracking_state",
-                                  "rt/uav1/stage_report", "rt/parameter_answer"})
+        self.assertEqual(writes, {"rt/uav1/command", "rt/uav1/fallback_stop",
+                                  "rt/uav1/tracking_state", "rt/uav1/stage_report",
+                                  "rt/parameter_answer"})
         self.assertEqual(self.rights("recorder"), ({"rt/*"}, set()))
         self.assertNotIn("rt/uav1/committed_trajectory", self.rights("viewer")[1])
         self.assertEqual(self.rights("my_search"), self.rights("path_search"))

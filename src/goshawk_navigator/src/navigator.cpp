@@ -10,11 +10,7 @@
 #include "times.hpp"
 
 namespace goshawk::navigator {
-namespace {
-
-constexpr double kTracking_s = 0.5;  // what the tracker said is believed for so long
-
-}  // namespace
+namespace {}  // namespace
 
 std::string_view to_string(State state) {
   constexpr std::array<std::string_view, 6> names{"idle",    "planning", "flying",

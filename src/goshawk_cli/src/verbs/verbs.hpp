@@ -18,6 +18,7 @@ void add_plan(Program& program);
 void add_check(Program& program);
 void add_world(Program& program);
 void add_map(Program& program);
+void add_map_picture(const Verb& map);
 void add_sense(Program& program);
 void add_campaign(Program& program);
 void add_launch(Program& program);

@@ -175,10 +175,12 @@ class Navigator {
     double lead_s = 0.0;
     std::int64_t not_before_ns = 0;  // the next start
     std::int64_t retry_ns = 0;
-    std::int64_t wait_begin_ns = 0;  // since when a plan waits for the vehicle to come to rest
+    std::int64_t wait_begin_ns = 0;    // since when a plan waits for the vehicle to come to rest
+    std::int64_t settle_begin_ns = 0;  // since when there is a tracker that lets it
     std::optional<std::int64_t> revoked_ns = {};  // since when another goal is flown to
     std::optional<MapRetry> map_retry = {};       // it failed because of the map
   };
+  static constexpr double kTracking_s = 0.5;  // what the tracker said is believed for so long
   struct Tracked {
     std::uint64_t id;
     std::int64_t ns;
@@ -201,6 +203,9 @@ class Navigator {
   Descent lowest_below(const Vec3& from_map, Index3 lowest) const;
   // planning.cpp
   void plan(std::int64_t now_ns);
+  bool tracker_is_silent(std::int64_t now_ns) const;
+  bool waits_for_tracker(std::int64_t now_ns);
+  Error why_it_does_not_rest(std::int64_t now_ns) const;
   Start start_in_flight(std::int64_t now_ns) const;
   Start start_at(std::int64_t time_ns) const;
   Start start_at_rest(std::int64_t now_ns) const;
