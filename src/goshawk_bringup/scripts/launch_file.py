@@ -16,7 +16,7 @@ STAGE_KEYS = {"component", "node", "params", "remap", "command", "name", "realti
 NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]*")
 # A flight goes on without these.
 OBSERVERS = {"flight_check", "mission", "viewer_bridge", "visualizer"}
-PLANTS = {"simulator", "mujoco"}
+PLANTS = {"simulator", "mujoco", "px4_stand_in"}
 
 
 class WrongCall(Exception):
