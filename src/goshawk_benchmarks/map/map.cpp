@@ -16,6 +16,7 @@
 #include "goshawk/core/random.hpp"
 #include "goshawk/map_server/live_map.hpp"
 #include "goshawk/map_server/map_file.hpp"
+#include "map/processes.hpp"
 
 namespace goshawk::bench {
 namespace {
@@ -80,11 +81,6 @@ std::vector<Vec3> scan_of(const Hall& hall, const Sensor& s, const Vec3& from, R
   }
   return points;
 }
-
-struct Shot {
-  Vec3 from;
-  std::vector<Vec3> points;
-};
 
 std::vector<Shot> fly(const Hall& hall, const Sensor& sensor, int count) {
   Random random(11);
@@ -195,6 +191,25 @@ Result<nlohmann::ordered_json> measure(const Case& c, const std::vector<Shot>& s
                                 {"voxels_changed", changed / std::int64_t(shots.size())}};
 }
 
+/// From the cloud's message to a planner's map over separate processes, in a window of 12.5 million
+/// voxels. A row of its own table.
+Result<nlohmann::ordered_json> measure_latency(const std::vector<Shot>& shots) {
+  const ProcessesOptions options{.lower_map = Vec3(-25, -25, -18), .upper_map = Vec3(25, 25, 22)};
+  auto samples = measure_processes(shots, options);
+  if (!samples) return samples.error();
+  std::ranges::sort(samples->total_ms);
+  return nlohmann::ordered_json{{"table", "processes"},
+                                {"sensor", "lidar"},
+                                {"points", shots.front().points.size()},
+                                {"resolution_m", options.resolution_m},
+                                {"range_m", options.range_m},
+                                {"scans", samples->total_ms.size()},
+                                {"lost", samples->lost},
+                                {"median_ms", at_share(samples->total_ms, 0.5)},
+                                {"p90_ms", at_share(samples->total_ms, 0.9)},
+                                {"p99_ms", at_share(samples->total_ms, 0.99)}};
+}
+
 int run(const Call& call) {
   Report report("map", Options::of(call));
   const bool quick = report.options().quick;
@@ -219,6 +234,12 @@ int run(const Call& call) {
       return add({"file", 0.2, 30.0}, *shots);
     }
     const auto lidar_shots = fly(hall, lidar, scans);
+    if (call.value("processes", false)) {
+      auto row = measure_latency(lidar_shots);
+      if (!row) return row.error();
+      report.add(*std::move(row));
+      return success();
+    }
     for (const Case& c : {Case{"lidar", 0.2, 30.0}, {"lidar", 0.2, 10.0}, {"lidar", 0.4, 30.0},
                           {"lidar", 0.1, 30.0}}) {
       if (quick && c.resolution_m < 0.2) continue;

@@ -198,12 +198,14 @@ def place(plan, options):
 
 # component, its parameter, and the file in the folder of logs
 MEMORIES = (("map_server", "journal_file", "map.journal"),
-            ("navigator", "memory_file", "navigator.memory"))
+            ("navigator", "memory_file", "navigator.memory"),
+            ("mission", "memory_file", "mission.memory"))
 
 
 def keep_memories(plan, log_dir):
     """Gives stages files, so that one that is started again goes on where it ended: the map server
-    with its map, the navigator with its goal. What another launch has left there is removed."""
+    with its map, the navigator with its goal, the mission where it was. What another launch has
+    left there is removed."""
     arguments = plan.ros_args(plan.stages_with_nodes())
     for component, parameter, name in MEMORIES:
         node = plan.node_of({component})

@@ -15,8 +15,8 @@ STAGE_KEYS = {"component", "node", "params", "remap", "command", "name", "realti
               "host"}
 NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]*")
 # A flight goes on without these.
-OBSERVERS = {"flight_check", "viewer_bridge", "visualizer"}
-PLANTS = {"simulator", "mujoco"}
+OBSERVERS = {"flight_check", "mission", "viewer_bridge", "visualizer"}
+PLANTS = {"simulator", "mujoco", "px4_stand_in"}
 
 
 class WrongCall(Exception):

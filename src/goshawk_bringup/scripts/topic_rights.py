@@ -12,15 +12,18 @@ ALL = ["/*"]
 STAGES = {
     # cloud_in and depth_in are remapped if Goshawk's own sensors fill them (launch file live).
     "map_server": {"reads": ["cloud_in", "points", "depth_in", "depth/image_rect_raw",
-                             "depth_info_in", "depth/camera_info", "odom", "/tf", "/tf_static"],
-                   "writes": [*MAP, "octomap_binary"]},
+                             "depth_info_in", "depth/camera_info", "octomap_in", "odom", "/tf",
+                             "/tf_static"],
+                   "writes": [*MAP, "octomap_binary", "octomap_world"]},
     "path_search": {"reads": [*MAP, "plan_request"], "writes": ["path"]},
     "corridor_builder": {"reads": [*MAP, "plan_request", "path"], "writes": ["corridor"]},
     "trajectory_optimizer": {"reads": ["plan_request", "corridor"], "writes": ["trajectory"]},
-    "navigator": {"reads": [*MAP, "goal_pose", "odom", "trajectory", "stage_report",
-                            "tracking_state"],
+    "navigator": {"reads": [*MAP, "goal_pose", "goal", "operator_command", "odom", "trajectory",
+                            "stage_report", "tracking_state"],
                   "writes": ["plan_request", "committed_trajectory", "navigator_state",
-                             "navigator_alive"]},
+                             "navigator_alive", "operator_answer"]},
+    "mission": {"reads": ["mission", "operator_command", "navigator_state", "odom"],
+                "writes": ["goal", "mission_state", "operator_answer"]},
     # In the navigator's place, for another planner's plans.
     "guard": {"reads": [*MAP, "plan/path", "plan/trajectory", "plan/polynomial", "plan/bspline",
                         "odom", "tracking_state", "stage_report"],
@@ -28,8 +31,8 @@ STAGES = {
                          "navigator_alive"]},
     "tracker": {"reads": [*MAP, "committed_trajectory", "odom", "navigator_alive",
                           "stage_report"],
-                "writes": ["command", "tracking_state"]},
-    "vehicle": {"reads": [*MAP, "command"],
+                "writes": ["command", "fallback_stop", "tracking_state"]},
+    "vehicle": {"reads": [*MAP, "command", "fallback_stop"],
                 "writes": ["odom", "odom_true", "vehicle_status", "/tf"]},
     "flight_check": {"reads": ["octomap_binary", "committed_trajectory", "odom", "odom_true",
                                "vehicle_status"], "writes": []},
@@ -40,9 +43,10 @@ STAGES = {
 }
 # They are no stages: they report nothing.
 PEOPLE = {
-    "viewer": {"reads": ALL, "writes": ["goal_pose"]},
+    "viewer": {"reads": ALL, "writes": ["goal_pose", "operator_command"]},
     "recorder": {"reads": ALL, "writes": []},
-    "operator": {"reads": ALL, "writes": ["goal_pose", "/parameter_request"]},
+    "operator": {"reads": ALL, "writes": ["goal_pose", "goal", "mission", "operator_command",
+                                          "octomap_in", "/parameter_request"]},
 }
 COMPONENTS = {"simulator": "vehicle", "mujoco": "vehicle", "viewer_bridge": "viewer",
               "baseline_optimizer": "trajectory_optimizer"}

@@ -76,8 +76,9 @@ class Made(unittest.TestCase):
     def test_rights_are_the_least(self):
         reads, writes = self.rights("tracker")
         self.assertIn("rt/uav1/committed_trajectory", reads)
-        self.assertEqual(writes, {"rt/uav1/command", "rt/uav1/tracking_state",
-                                  "rt/uav1/stage_report", "rt/parameter_answer"})
+        self.assertEqual(writes, {"rt/uav1/command", "rt/uav1/fallback_stop",
+                                  "rt/uav1/tracking_state", "rt/uav1/stage_report",
+                                  "rt/parameter_answer"})
         self.assertEqual(self.rights("recorder"), ({"rt/*"}, set()))
         self.assertNotIn("rt/uav1/committed_trajectory", self.rights("viewer")[1])
         self.assertEqual(self.rights("my_search"), self.rights("path_search"))
@@ -90,7 +91,8 @@ class Made(unittest.TestCase):
         of_either = {t for t in several if set(writers[t]) == {"navigator", "guard"}}
         self.assertEqual(of_either, {f"rt/uav1/{topic}" for topic in (
             "committed_trajectory", "navigator_state", "navigator_alive")})
-        self.assertEqual(several - of_either, {"rt/uav1/stage_report", "rt/parameter_answer"})
+        self.assertEqual(several - of_either, {"rt/uav1/stage_report", "rt/uav1/operator_answer",
+                                               "rt/parameter_answer"})
 
     def test_a_remapped_topic_is_one_that_the_stage_has_a_right_to(self):
         table, remapped = topic_rights.roles(), 0

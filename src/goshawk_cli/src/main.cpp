@@ -15,6 +15,7 @@ constexpr const char* kFooter =
     "  goshawk view                 look at it\n"
     "  goshawk launch flight        all stages, until Ctrl-C; in another terminal:\n"
     "  goshawk goto 3,8,2           fly there\n"
+    "  goshawk hold                 stop\n"
     "  goshawk topic list           what they say to each other\n"
     "  goshawk param set /navigator v_max_m_s 1\n"
     "  goshawk doctor               if something does not work\n"
@@ -48,6 +49,11 @@ void describe(Program& program) {
   add_launch(program);
   add_goto(program);
   add_hold(program);
+  add_resume(program);
+  add_land(program);
+  add_takeoff(program);
+  add_mission(program);
+  add_why(program);
   add_place(program);
   add_view(program);
   add_run(program);

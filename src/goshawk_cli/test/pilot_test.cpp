@@ -1,7 +1,9 @@
-// goto and hold as processes of their own against a navigator of this test: real DDS on loopback.
+// Verbs for a flight that runs, as processes of their own against stages of this test: real DDS on
+// loopback.
 
 #include <gmock/gmock.h>
 
+#include <fstream>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -18,7 +20,13 @@ using goshawk::runtime::Context;
 using goshawk::runtime::ContextOptions;
 using goshawk::runtime::Node;
 using goshawk::runtime::Qos;
+using goshawk_msgs::msg::Mission;
+using goshawk_msgs::msg::MissionState;
 using goshawk_msgs::msg::NavigatorState;
+using goshawk_msgs::msg::OperatorAnswer;
+using goshawk_msgs::msg::OperatorCommand;
+namespace mission_state = goshawk_msgs::msg::MissionState_Constants;
+namespace verb = goshawk_msgs::msg::OperatorCommand_Constants;
 namespace state = goshawk_msgs::msg::NavigatorState_Constants;
 using Json = nlohmann::json;
 using testing::HasSubstr;
@@ -47,6 +55,12 @@ class Flight : public testing::Test {
                                                         goals_.push_back(goal);
                                                         steps_ = 0;
                                                       });
+    answers_ = node_->advertise<OperatorAnswer>("operator_answer", Qos::reliable_last());
+    missions_ = node_->advertise<MissionState>("mission_state", Qos::latched());
+    node_->subscribe<OperatorCommand>("operator_command", Qos::reliable_last(),
+                                      [this](const auto& m, const auto&) { on_command(m); });
+    node_->subscribe<Mission>("mission", Qos::reliable_last(),
+                              [this](const auto& m, const auto&) { on_mission(m); });
     node_->every(0.02, [this] { step(); });
     thread_ = std::thread([this] { node_->spin(); });
   }
@@ -65,7 +79,45 @@ class Flight : public testing::Test {
     return steps_ > 10;
   }
 
+  /// What was commanded last.
+  OperatorCommand command() {
+    const std::lock_guard lock(mutex_);
+    return command_;
+  }
+  void mission_is(std::uint8_t state, const char* code = "ok", const char* message = "") {
+    mission_.state(state);
+    mission_.code(code);
+    mission_.message(message);
+    EXPECT_TRUE(missions_.publish(mission_));
+  }
+  std::uint8_t mission_end_ = mission_state::STATE_DONE;  // of every mission
+
  private:
+  void answer(std::uint64_t id, const std::string& client) {
+    OperatorAnswer m;
+    m.id(id);
+    m.client(client);
+    m.code(refuses_ ? "no_map" : "ok");
+    m.message(refuses_ ? "no map has come" : "does it");
+    EXPECT_TRUE(answers_.publish(m));
+  }
+  void on_command(const OperatorCommand& m) {
+    const std::lock_guard lock(mutex_);
+    answer(m.id(), m.client());
+    if (std::exchange(command_, m).id() == m.id()) return;
+    if (m.verb() == verb::VERB_TAKEOFF) say(state::STATE_ARRIVED, "ok", "");
+  }
+  void on_mission(const Mission& m) {
+    answer(m.id(), m.client());
+    mission_.id(m.id());
+    mission_.name(m.name());
+    mission_.waypoints(std::uint32_t(m.waypoints().size()));
+    mission_.waypoint(1);
+    mission_is(mission_state::STATE_FLYING);
+    mission_.waypoint(2);
+    const bool done = mission_end_ == mission_state::STATE_DONE;
+    mission_is(mission_end_, done ? "ok" : "no_path", done ? "" : "waypoint 2 of 2: a wall");
+  }
   void say(std::uint8_t what, const char* code, const char* message) {
     NavigatorState m;
     const auto now_ns = node_->now_ns();
@@ -98,6 +150,10 @@ class Flight : public testing::Test {
   std::unique_ptr<Node> node_;
   goshawk::runtime::Publisher<nav_msgs::msg::Odometry> odometry_;
   goshawk::runtime::Publisher<NavigatorState> states_;
+  goshawk::runtime::Publisher<OperatorAnswer> answers_;
+  goshawk::runtime::Publisher<MissionState> missions_;
+  OperatorCommand command_;
+  MissionState mission_;
   geometry_msgs::msg::Point position_ = [] {
     geometry_msgs::msg::Point p;
     p.x(1.0);
@@ -108,6 +164,11 @@ class Flight : public testing::Test {
   std::thread thread_;
   std::mutex mutex_;
   std::vector<geometry_msgs::msg::PoseStamped> goals_;
+
+ protected:
+  bool refuses_ = false;  // every command
+
+ private:
   int steps_ = 0;  // since the newest goal
 };
 
@@ -137,12 +198,64 @@ TEST_F(Flight, GotoSaysWhyAGoalWasGivenUp) {
   EXPECT_THAT(outcome.err, HasSubstr("goal_outside: goal is outside the map"));
 }
 
-TEST_F(Flight, HoldMakesThePlaceOfTheVehicleItsGoal) {
+TEST_F(Flight, HoldCommandsTheNavigatorAndWaitsForRest) {
   const auto outcome = pilot({"hold"});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("holds at (1.000, 2.000, 3.000)"));
-  ASSERT_EQ(goals().size(), 1U);
-  EXPECT_EQ(goals()[0].pose().position().z(), 3.0);
+  EXPECT_EQ(command().verb(), verb::VERB_HOLD);
+  EXPECT_TRUE(goals().empty());
+}
+
+TEST_F(Flight, TakeoffSaysHowHighAndWaitsForTheNavigator) {
+  const auto outcome = pilot({"takeoff", "--height", "2.5", "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(command().verb(), verb::VERB_TAKEOFF);
+  EXPECT_EQ(command().height(), 2.5);
+  EXPECT_EQ(Json::parse(outcome.out)["position"], Json::parse("[1.0, 2.0, 3.0]"));
+}
+
+TEST_F(Flight, LandSaysWhyItWasRefused) {
+  refuses_ = true;
+  const auto outcome = pilot({"land"});
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("no_map: no map has come"));
+  EXPECT_EQ(command().verb(), verb::VERB_LAND);
+}
+
+TEST_F(Flight, ResumeIsForTheMissionIfOneWaitsForIt) {
+  mission_is(mission_state::STATE_FLYING);
+  EXPECT_EQ(pilot({"resume"}).status, 0);
+  EXPECT_EQ(command().verb(), verb::VERB_RESUME);
+  mission_is(mission_state::STATE_PAUSED);
+  EXPECT_EQ(pilot({"resume"}).status, 0);
+  EXPECT_EQ(command().verb(), verb::VERB_RESUME_MISSION);
+}
+
+/// A file with two waypoints.
+std::string mission_file(const char* second = "4,5,6") {
+  std::string path = testing::TempDir() + "cli_mission_" + std::to_string(getpid()) + ".csv";
+  std::ofstream(path) << "x_m,y_m,z_m\n1,2,3\n" << second << "\n";
+  return path;
+}
+
+TEST_F(Flight, MissionIsSentOnceAndWaitedFor) {
+  const auto outcome = pilot({"mission", mission_file(), "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(Json::parse(outcome.out)["waypoints"], 2);
+}
+
+TEST_F(Flight, MissionThatFailsSaysWhere) {
+  mission_end_ = mission_state::STATE_FAILED;
+  const auto outcome = pilot({"mission", mission_file()});
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("no_path: waypoint 2 of 2: a wall"));
+}
+
+TEST(MissionAlone, IsRefusedBeforeAnythingIsSent) {
+  const auto outcome = cli_test::run({"mission", mission_file("4,5")},
+                                     goshawk::runtime::hold_private_domain().value());
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.err, HasSubstr(".csv, line 3: it has 2 values, but there are 3 columns"));
 }
 
 TEST(PilotAlone, SaysThatNoFlightRuns) {

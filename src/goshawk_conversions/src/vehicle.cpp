@@ -99,4 +99,19 @@ void fill_msg(const AttitudeSetpoint& command, goshawk_msgs::msg::AttitudeSetpoi
   m.body_rate(to_vector(command.angular_velocity_base));
 }
 
+Result<FallbackStop> from_msg(const goshawk_msgs::msg::FallbackStop& m) {
+  if (auto s = check_frame(m.header(), kMapFrame, "a fallback stop"); !s) return s.error();
+  FallbackStop stop{.step_s = m.step(), .states = {}};
+  stop.states.reserve(m.states().size());
+  for (const auto& state : m.states()) stop.states.push_back(from_msg(state));
+  if (auto status = stop.check(); !status) return status.error();
+  return stop;
+}
+
+void fill_msg(const FallbackStop& stop, goshawk_msgs::msg::FallbackStop& m) {
+  m.step(stop.step_s);
+  m.states().resize(stop.states.size());
+  for (std::size_t i = 0; i < stop.states.size(); ++i) m.states()[i] = to_msg(stop.states[i]);
+}
+
 }  // namespace goshawk::conversions

@@ -10,7 +10,6 @@
 namespace goshawk::conversions {
 namespace {
 
-
 TEST(Stamp, SurvivesTheRoundTripAlsoBeforeTheEpoch) {
   for (const std::int64_t t : {0LL, 1LL, 999'999'999LL, 1'000'000'000LL, -1LL, -1'500'000'000LL}) {
     EXPECT_EQ(to_ns(to_stamp(t)), t);
@@ -204,6 +203,27 @@ TEST(CommandMessage, WithNegativeOrMissingThrustIsRefused) {
   EXPECT_EQ(from_msg(m).code(), ErrorCode::invalid_input);
   m.thrust(std::nan(""));
   EXPECT_EQ(from_msg(m).code(), ErrorCode::invalid_input);
+}
+
+TEST(FallbackStopMessage, KeepsEveryStateAndIsCheckedWhenItComes) {
+  FallbackStop stop{.step_s = 0.05, .states = {{.position = {1, 2, 3}}, {.position = {1, 2, 4}}}};
+  stop.states[0].velocity = {0.1, 0.2, 0.3};
+  stop.states[0].acceleration = {4, 5, 6};
+  goshawk_msgs::msg::FallbackStop m;
+  m.header(make_header(0));
+  m.states().resize(7);  // of an earlier one
+  fill_msg(stop, m);
+  const auto back = from_msg(m);
+  ASSERT_TRUE(back.ok()) << back.error().message;
+  EXPECT_EQ(back->step_s, 0.05);
+  ASSERT_EQ(back->states.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(largest_difference(back->states[i], stop.states[i]), 0.0);
+  }
+  m.states().back().velocity().x(1.0);
+  EXPECT_EQ(from_msg(m).code(), ErrorCode::invalid_input);
+  m.header(make_header(0, "odom"));
+  EXPECT_EQ(from_msg(m).code(), ErrorCode::wrong_frame);
 }
 
 }  // namespace

@@ -8,14 +8,16 @@
 #include <optional>
 
 #include "beginning.hpp"
+#include "map_output.hpp"
 #include "goshawk/map_server_messages/cloud.hpp"
 #include "goshawk/map_server_messages/depth_image.hpp"
-#include "goshawk/conversions/grid.hpp"
+#include "goshawk/map_server_messages/octomap.hpp"
 #include "goshawk/conversions/vehicle.hpp"
 #include "goshawk/map_server/config.hpp"
 #include "goshawk/map_server/frame_tree.hpp"
 #include "goshawk/map_server/live_map.hpp"
 #include "goshawk/map_server/placement.hpp"
+#include "goshawk/map_server/sensor_watch.hpp"
 #include "goshawk/runtime/clock.hpp"
 #include "goshawk/runtime/component.hpp"
 #include "goshawk/stage/intake.hpp"
@@ -45,8 +47,8 @@ Beginning begin(const Config& config, Node& node) {
   return *std::move(beginning);
 }
 
-/// A map file; cloud_in, depth_in and depth_info_in, odom, /tf and /tf_static -> map/voxels,
-/// map/voxels/updates, octomap_binary
+/// A map file; cloud_in, depth_in and depth_info_in, octomap_in, odom, /tf and /tf_static ->
+/// map/voxels, map/voxels/updates, octomap_binary, octomap_world
 class MapServerComponent : public Component {
  public:
   explicit MapServerComponent(Node& node)
@@ -58,12 +60,10 @@ class MapServerComponent : public Component {
         beginning_(begin(config_, node)),
         map_(std::move(beginning_.map)),
         reporter_(node, StageRole::map_server, "bricks"),
-        voxels_(node.advertise<msg::VoxelGrid>("map/voxels", Qos::latched())),
-        updates_(
-            node.advertise<msg::VoxelGridUpdate>("map/voxels/updates", Qos::reliable_last(50))),
-        octomap_(node.advertise<octomap_msgs::msg::Octomap>("octomap_binary", Qos::latched())),
+        output_(node, reporter_, beginning_.versions_before, config_.publish_raw),
         odometry_("odometry", kPosesKept_s, config_.pose_max_gap_s),
-        frames_(kPosesKept_s, config_.pose_max_gap_s) {
+        frames_(kPosesKept_s, config_.pose_max_gap_s),
+        watch_(config_.sensor_timeout_s) {
     node.subscribe<sensor_msgs::msg::PointCloud2>(
         "cloud_in", Qos::best_effort(2),
         [this](const sensor_msgs::msg::PointCloud2& m, const MessageInfo&) { on_cloud(m); });
@@ -73,6 +73,9 @@ class MapServerComponent : public Component {
     node.subscribe<sensor_msgs::msg::Image>(
         "depth_in", Qos::best_effort(2),
         [this](const sensor_msgs::msg::Image& m, const MessageInfo&) { on_depth(m); });
+    node.subscribe<octomap_msgs::msg::Octomap>(
+        "octomap_in", Qos::reliable_last(1),
+        [this](const octomap_msgs::msg::Octomap& m, const MessageInfo&) { on_map(m); });
     node.subscribe<nav_msgs::msg::Odometry>(
         "odom", Qos::best_effort(50),
         [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) { on_odometry(m); },
@@ -87,7 +90,11 @@ class MapServerComponent : public Component {
       frames_.set_static(std::string(conversions::kBodyFrame), config_.sensor_frame,
                          sensor_mount(config_));
     }
-    node.every(kWaitingPeriod_s, [this] { place_waiting(); });
+    node.every(kWaitingPeriod_s, [this] {
+      place_waiting();
+      tell_of_sensors();
+      output_.publish_world_if_asked(map_, config_.max_voxels);
+    });
     node.every(kWholeMapPeriod_s, [this] {
       if (changed_) publish_whole();
       tell_of_journal();
@@ -108,30 +115,35 @@ class MapServerComponent : public Component {
  private:
   void publish_whole() {
     changed_ = false;
-    const VoxelGrid grid = map_.grid();
-    publish_grid(grid);
-    publish_octomap(grid);
+    output_.publish_whole(map_.grid());
   }
 
-  void publish_grid(VoxelGrid grid) {  // a copy shares its bits
-    grid.version += beginning_.versions_before;
-    if (!config_.publish_raw) grid.raw = {};
-    msg::VoxelGrid m;
-    m.header(conversions::make_header(node_.now_ns()));
-    conversions::fill_msg(grid, m);
-    reporter_.send(voxels_, m);
+  // A map from elsewhere. The answer's request is the stamp of the message.
+  void on_map(const octomap_msgs::msg::Octomap& m) {
+    const auto request_id = std::uint64_t(conversions::to_ns(m.header().stamp()));
+    const auto status = take_map(m);
+    if (!status) return reporter_.failed(request_id, status.error());
+    reporter_.answered(request_id, {}, {{"bricks", double(result_.update.bricks.size())}},
+                       "the map was taken");
   }
 
-  void publish_octomap(const VoxelGrid& grid) {
-    const auto bytes = binary_payload(grid.geometry, grid.raw, grid.known);
-    if (!bytes) return reporter_.fault(bytes.error());
-    octomap_msgs::msg::Octomap m;
-    m.header(conversions::make_header(node_.now_ns()));
-    m.binary(true);
-    m.id("OcTree");
-    m.resolution(grid.geometry.resolution_m);
-    m.data().assign(bytes->begin(), bytes->end());
-    reporter_.send(octomap_, m);
+  Status take_map(const octomap_msgs::msg::Octomap& m) {
+    if (m.header().frame_id() != conversions::kMapFrame) {
+      return fail(ErrorCode::wrong_frame,
+                  fmt::format("the map on octomap_in is in frame '{}', not in '{}'",
+                              m.header().frame_id(), conversions::kMapFrame));
+    }
+    const auto map = read_octomap(m);
+    if (!map) return map.error();
+    if (auto status = map_.insert_map(*map, result_.update); !status) return status;
+    tell_of_forgotten();
+    // What lies outside of the window is in no update.
+    if (beginning_.journal) {
+      beginning_.journal->add(result_.update.to_version + beginning_.versions_before,
+                              map_.bricks_outside());
+    }
+    publish_changes();
+    return success();
   }
 
   void on_odometry(const nav_msgs::msg::Odometry& m) {
@@ -187,7 +199,9 @@ class MapServerComponent : public Component {
     if (auto s = read_cloud(m, std::size_t(config_.max_points), next.cloud); !s) {
       return reporter_.fault(s.error());
     }
-    if (m.width() == 0 || m.height() == 0) return;  // nothing was seen
+    if (m.width() == 0 || m.height() == 0) {  // nothing was seen
+      return watch_.saw(next.frame, 0, 0, node_.monotonic_ns());
+    }
     take(std::move(next));
   }
 
@@ -237,7 +251,7 @@ class MapServerComponent : public Component {
                             time_span(next.cloud).first_ns >= odometry_.oldest_ns();
       if (may_come) return;
       if (status) {
-        insert(next.cloud);
+        insert(next);
       } else {
         reporter_.fault(status.error());
       }
@@ -265,7 +279,7 @@ class MapServerComponent : public Component {
     return success();
   }
 
-  void insert(const SensorCloud& cloud) {
+  void insert(const Waiting& next) {
     const Scan scan{.points_map = placed_.points_map,
                     .origins_map = placed_.origins_map,
                     .max_range_m = config_.max_range_m,
@@ -275,14 +289,21 @@ class MapServerComponent : public Component {
       return reporter_.fault(status.error());
     }
     tell_of_forgotten();
-    placed_ns_ = time_span(cloud).last_ns;
-    GridUpdate& update = result_.update;
-    update.from_version += beginning_.versions_before;
-    update.to_version += beginning_.versions_before;
+    const std::int64_t returns = std::int64_t(next.cloud.points.size()) - result_.points_left_out;
+    watch_.saw(next.frame, std::size_t(returns), std::size_t(result_.points_far),
+               node_.monotonic_ns());
+    placed_ns_ = time_span(next.cloud).last_ns;
+    publish_changes();
+  }
+
+  // Of result_, to subscribers and to the journal.
+  void publish_changes() {
+    output_.add_versions_before(result_.update);
     if (beginning_.journal) {
-      beginning_.journal->add(update.to_version, journal_bricks(update, map_.geometry()));
+      beginning_.journal->add(result_.update.to_version,
+                              journal_bricks(result_.update, map_.geometry()));
     }
-    publish_update(update);
+    output_.publish_update(result_.update);
     changed_ = true;
   }
 
@@ -292,19 +313,19 @@ class MapServerComponent : public Component {
     reporter_.fault(forgotten_fault(config_));
   }
 
+  void tell_of_sensors() {
+    for (const SensorWatch::News& news : watch_.news(node_.monotonic_ns())) {
+      if (news.fault) {
+        reporter_.fault(*news.fault);
+      } else {
+        reporter_.ready(news.message);
+      }
+    }
+  }
+
   void tell_of_journal() {
     if (!beginning_.journal) return;
     if (const auto fault = beginning_.journal->take_fault()) reporter_.fault(*fault);
-  }
-
-  void publish_update(GridUpdate& update) {
-    if (!config_.publish_raw) {
-      for (Brick& brick : update.bricks) brick.raw.reset();
-    }
-    msg::VoxelGridUpdate m;
-    m.header(conversions::make_header(node_.now_ns()));
-    conversions::fill_msg(update, m);
-    reporter_.send(updates_, m);
   }
 
   Node& node_;
@@ -313,11 +334,10 @@ class MapServerComponent : public Component {
   LiveMap map_;
   ScanResult result_;  // its memory is used again
   StageReporter reporter_;
-  Publisher<msg::VoxelGrid> voxels_;
-  Publisher<msg::VoxelGridUpdate> updates_;
-  Publisher<octomap_msgs::msg::Octomap> octomap_;
+  MapOutput output_;
   PoseBuffer odometry_;
   FrameTree frames_;
+  SensorWatch watch_;
   std::map<std::string, Pinhole> cameras_;  // by their frame
   std::deque<Waiting> waiting_;
   PlacedCloud placed_;           // their memory is used again

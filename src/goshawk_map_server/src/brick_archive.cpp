@@ -36,6 +36,12 @@ std::int64_t BrickArchive::bytes_of(const Entry& entry) {
   return kOverhead + 8 * std::int64_t(entry.words.capacity());
 }
 
+BrickArchive::Kept BrickArchive::unpacked(const Entry& entry) {
+  Kept kept;
+  unpack(unpack(entry.words.data(), kept.known), kept.raw);
+  return kept;
+}
+
 void BrickArchive::keep(Index3 brick, const BrickMap::Bits& bits) {
   std::vector<Word> packed;
   pack(bits.known, packed);
@@ -60,8 +66,7 @@ void BrickArchive::keep(Index3 brick, const BrickMap::Bits& bits) {
 std::optional<BrickArchive::Kept> BrickArchive::take(Index3 brick) {
   const auto found = kept_.find(brick);
   if (found == kept_.end()) return {};
-  Kept kept;
-  unpack(unpack(found->second.words.data(), kept.known), kept.raw);
+  const Kept kept = unpacked(found->second);
   bytes_ -= bytes_of(found->second);
   kept_.erase(found);
   return kept;

@@ -26,6 +26,12 @@ class BrickArchive {
   /// @return the brick, which is forgotten here; nothing if it never left
   std::optional<Kept> take(Index3 brick);
 
+  /// visit(Index3 brick, const Kept&) for each one, in no order
+  template <typename Visit>
+  void for_each(Visit&& visit) const {
+    for (const auto& [brick, entry] : kept_) visit(brick, unpacked(entry));
+  }
+
   std::size_t bricks() const { return kept_.size(); }
   std::int64_t forgotten() const { return forgotten_; }
   std::int64_t memory_bytes() const { return bytes_; }
@@ -43,6 +49,7 @@ class BrickArchive {
     std::uint64_t number = 0;  // when it came
   };
   static std::int64_t bytes_of(const Entry& entry);
+  static Kept unpacked(const Entry& entry);
   void drop_taken();
 
   std::int64_t max_bytes_;

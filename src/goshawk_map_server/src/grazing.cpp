@@ -10,24 +10,20 @@ constexpr int kMostHeld = 64;  // voxels of a surface that a ray grazes
 
 }  // namespace
 
-// Backwards from the end while the ray grazes.
+// Backwards from the end while the ray grazes. Masks in place of branches: which face comes next
+// cannot be foretold.
 Index3 Grazing::first_held(const Ray& ray) const {
   Index3 voxel = ray.last();
   std::int64_t x = ray.x.last_time(), y = ray.y.last_time(), z = ray.z.last_time();
   const int most = std::min(kMostHeld, ray.x.count + ray.y.count + ray.z.count - 1);
   std::optional<Layers> layers;  // most rays meet no obstacle before their end
   for (int k = 0; k < most; ++k) {
-    Index3 previous = voxel;
-    if (x >= y && x >= z) {
-      previous.x -= ray.x.step;
-      x -= ray.x.every;
-    } else if (y >= z) {
-      previous.y -= ray.y.step;
-      y -= ray.y.every;
-    } else {
-      previous.z -= ray.z.step;
-      z -= ray.z.every;
-    }
+    const bool by_x = (x >= y) & (x >= z), by_y = !by_x & (y >= z), by_z = !by_x & !by_y;
+    const Index3 previous{voxel.x - (ray.x.step & -int(by_x)), voxel.y - (ray.y.step & -int(by_y)),
+                          voxel.z - (ray.z.step & -int(by_z))};
+    x -= ray.x.every & -std::int64_t(by_x);
+    y -= ray.y.every & -std::int64_t(by_y);
+    z -= ray.z.every & -std::int64_t(by_z);
     if (!raw(previous)) break;
     if (!layers) layers = layers_of(ray);
     if (!grazed(*layers, previous)) break;

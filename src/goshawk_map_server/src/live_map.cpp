@@ -40,6 +40,34 @@ Status check_scan(const Scan& scan, const GridGeometry& geometry) {
   return success();
 }
 
+Status check_map(const GridGeometry& map, const GridGeometry& window, bool follows) {
+  const double resolution_m = window.resolution_m;
+  if (std::abs(map.resolution_m - resolution_m) > 1e-9 * resolution_m) {
+    return fail(ErrorCode::invalid_input,
+                fmt::format("the map has voxels of {:g} m, the map server of {:g} m: they must be "
+                            "of one size",
+                            map.resolution_m, resolution_m));
+  }
+  const Vec3 lower = map.origin_map, upper = map.upper_corner_map();
+  if (std::max(lower.cwiseAbs().maxCoeff(), upper.cwiseAbs().maxCoeff()) >
+      kFarthest_voxels * resolution_m) {
+    return fail(ErrorCode::map_too_large,
+                fmt::format("the map reaches more than 2^29 voxels of {:g} m from the origin of the "
+                            "map frame",
+                            resolution_m));
+  }
+  const bool meets = (lower.array() < window.upper_corner_map().array()).all() &&
+                     (upper.array() > window.origin_map.array()).all();
+  if (!meets && !follows) {
+    return fail(ErrorCode::invalid_input,
+                fmt::format("the map, from {} to {} m, lies outside of the map server's box, from {} "
+                            "to {} m: nothing of it is taken",
+                            to_text(lower), to_text(upper), to_text(window.origin_map),
+                            to_text(window.upper_corner_map())));
+  }
+  return success();
+}
+
 }  // namespace
 
 struct LiveMap::Parts {
@@ -124,6 +152,24 @@ Status LiveMap::insert_scan(const Scan& scan, ScanResult& result) {
   update.from_version = parts_->version;
   update.to_version = ++parts_->version;
   return success();
+}
+
+Status LiveMap::insert_map(const RawVoxels& map, GridUpdate& update) {
+  LiveWindow& window = parts_->window;
+  if (auto s = check_map(map.geometry, window.geometry(), parts_->options.follows); !s) return s;
+  update.shift = {};
+  window.fill(map);
+  window.list_changes(update.bricks);
+  update.from_version = parts_->version;
+  update.to_version = ++parts_->version;
+  return success();
+}
+
+Result<RawVoxels> LiveMap::world(std::int64_t max_voxels) const {
+  return parts_->window.world(max_voxels);
+}
+std::vector<JournalBrick> LiveMap::bricks_outside() const {
+  return parts_->window.bricks_outside();
 }
 
 std::int64_t LiveMap::memory_bytes() const {

@@ -1,7 +1,11 @@
 #include "live_window.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+
+#include "goshawk/map_server/sensor_watch.hpp"
 
 namespace goshawk::map_server {
 namespace {
@@ -22,6 +26,22 @@ int floor_div(int a, int b) {
 Index3 whole_bricks(Index3 size) {
   const Index3 n = brick_counts(size);
   return {n.x * kBrickSize.x, n.y * kBrickSize.y, n.z * kBrickSize.z};
+}
+
+// A brick's part of a map whose corner is the voxel `at` of the raster that bricks are counted on.
+BrickMap::Bits bits_of(const RawVoxels& raw, Index3 at, Index3 brick) {
+  BrickMap::Bits bits;
+  const Index3 n = raw.geometry.size;
+  for (int row = 0; row < Brick::kWords; ++row) {
+    const int y = kBrickSize.y * brick.y + row % 8 - at.y;
+    const int z = kBrickSize.z * brick.z + row / 8 - at.z;
+    if (y < 0 || y >= n.y || z < 0 || z >= n.z) continue;
+    const std::int64_t x = std::int64_t{kBrickSize.x} * brick.x - at.x;
+    const auto known = raw.known.bits_from(x, y, z);
+    bits.known[std::size_t(row)] = known;
+    bits.raw[std::size_t(row)] = raw.occupied.bits_from(x, y, z) & known;
+  }
+  return bits;
 }
 
 }  // namespace
@@ -80,37 +100,98 @@ void LiveWindow::fill(const RawVoxels& raw) {
   bricks(at.x, n.x, kBrickSize.x, first.x, last.x);
   bricks(at.y, n.y, kBrickSize.y, first.y, last.y);
   bricks(at.z, n.z, kBrickSize.z, first.z, last.z);
-  const Index3 counts = map_.counts();
-  const auto fill_brick = [&](Index3 brick) {
-    BrickMap::Bits bits;
-    bool any = false;
-    for (int row = 0; row < Brick::kWords; ++row) {
-      const int y = kBrickSize.y * brick.y + row % 8 - at.y;
-      const int z = kBrickSize.z * brick.z + row / 8 - at.z;
-      if (y < 0 || y >= n.y || z < 0 || z >= n.z) continue;
-      const std::int64_t x = std::int64_t{kBrickSize.x} * brick.x - at.x;
-      const auto known = raw.known.bits_from(x, y, z);
-      bits.known[std::size_t(row)] = known;
-      bits.raw[std::size_t(row)] = raw.occupied.bits_from(x, y, z) & known;
-      any = any || known != 0;
-    }
-    if (!any) return;
-    const bool inside = unsigned(brick.x) < unsigned(counts.x) &&
-                        unsigned(brick.y) < unsigned(counts.y) &&
-                        unsigned(brick.z) < unsigned(counts.z);
-    if (!inside) {
-      if (options_.follows) archive_.keep(brick + moved_, bits);
-      return;
-    }
-    for (int row = 0; row < Brick::kWords; ++row) {
-      map_.write(brick, row, bits.raw[std::size_t(row)], bits.known[std::size_t(row)]);
-    }
-  };
   for (int z = first.z; z <= last.z; ++z) {
     for (int y = first.y; y <= last.y; ++y) {
-      for (int x = first.x; x <= last.x; ++x) fill_brick({x, y, z});
+      for (int x = first.x; x <= last.x; ++x) fill_brick({x, y, z}, bits_of(raw, at, {x, y, z}));
     }
   }
+}
+
+// Known bits win over what was there before.
+void LiveWindow::fill_brick(Index3 brick, const BrickMap::Bits& bits) {
+  if (std::ranges::none_of(bits.known, [](auto word) { return word != 0; })) return;
+  const Index3 counts = map_.counts();
+  const bool inside = unsigned(brick.x) < unsigned(counts.x) &&
+                      unsigned(brick.y) < unsigned(counts.y) &&
+                      unsigned(brick.z) < unsigned(counts.z);
+  if (!inside && !options_.follows) return;
+  BrickArchive::Kept now;
+  if (!inside) {
+    now = archive_.take(brick + moved_).value_or(now);
+  } else if (const BrickMap::Bits* held = map_.find(brick)) {
+    now = {held->raw, held->known};
+  }
+  for (std::size_t row = 0; row < Brick::kWords; ++row) {
+    now.raw[row] = (now.raw[row] & ~bits.known[row]) | bits.raw[row];
+    now.known[row] |= bits.known[row];
+  }
+  if (!inside) return archive_.keep(brick + moved_, {now.raw, now.known, {}});
+  const std::int32_t slot = odds_.find(flat(brick));
+  for (int row = 0; row < Brick::kWords; ++row) {
+    const auto k = std::size_t(row);
+    map_.write(brick, row, now.raw[k], now.known[k]);
+    if (slot >= 0) odds_.settle(slot, row, bits.known[k] & ~bits.raw[k], bits.raw[k]);
+  }
+}
+
+// The first voxel of a brick, on the raster. @param brick counted from the corner of the first
+// window
+Index3 LiveWindow::corner_of(Index3 brick) const {
+  return lower_voxel_ +
+         Index3{kBrickSize.x * brick.x, kBrickSize.y * brick.y, kBrickSize.z * brick.z};
+}
+
+std::vector<JournalBrick> LiveWindow::bricks_outside() const {
+  std::vector<JournalBrick> bricks;
+  archive_.for_each([&](Index3 brick, const BrickArchive::Kept& kept) {
+    bricks.push_back({corner_of(brick), kept.raw, kept.known});
+  });
+  return bricks;
+}
+
+Result<RawVoxels> LiveWindow::world(std::int64_t max_voxels) const {
+  Index3 lower = moved_, upper = moved_ + map_.counts();
+  archive_.for_each([&](Index3 b, const BrickArchive::Kept&) {
+    lower = {std::min(lower.x, b.x), std::min(lower.y, b.y), std::min(lower.z, b.z)};
+    upper = {std::max(upper.x, b.x + 1), std::max(upper.y, b.y + 1), std::max(upper.z, b.z + 1)};
+  });
+  const Index3 counts = upper - lower;
+  const double voxels = double(Brick::kSizeX * Brick::kWords) * counts.x * counts.y * counts.z;
+  if (voxels > double(max_voxels)) {
+    return fail(ErrorCode::map_too_large,
+                fmt::format("the box around all that the map has met has {:.3g} voxels, more than "
+                            "max_voxels ({}): raise it",
+                            voxels, max_voxels));
+  }
+  const Index3 corner = corner_of(lower);
+  const GridGeometry geometry{
+      resolution_m_ * Vec3(corner.x, corner.y, corner.z),
+      resolution_m_,
+      {kBrickSize.x * counts.x, kBrickSize.y * counts.y, kBrickSize.z * counts.z}};
+  RawVoxels all{geometry, BitGrid(geometry.size, true), BitGrid(geometry.size, false)};
+  // A brick's rows are whole words of the grid.
+  const auto put = [&](Index3 brick, const Brick::Words& raw, const Brick::Words& known) {
+    const Index3 to = brick - lower;
+    for (int row = 0; row < Brick::kWords; ++row) {
+      const auto k = std::size_t(row);
+      if (known[k] == 0) continue;
+      const int y = kBrickSize.y * to.y + row % 8, z = kBrickSize.z * to.z + row / 8;
+      all.known.mutable_row(y, z)[to.x] = known[k];
+      all.occupied.mutable_row(y, z)[to.x] = raw[k];
+    }
+  };
+  archive_.for_each(
+      [&](Index3 b, const BrickArchive::Kept& kept) { put(b, kept.raw, kept.known); });
+  const Index3 n = map_.counts();
+  for (int z = 0; z < n.z; ++z) {
+    for (int y = 0; y < n.y; ++y) {
+      for (int x = 0; x < n.x; ++x) {
+        const BrickMap::Bits* held = map_.find({x, y, z});
+        if (held != nullptr) put(Index3{x, y, z} + moved_, held->raw, held->known);
+      }
+    }
+  }
+  return all;
 }
 
 Index3 LiveWindow::follow(const Vec3& p_map) {
@@ -193,6 +274,7 @@ void LiveWindow::choose_box(const Scan& scan) {
 void LiveWindow::insert(const Scan& scan, ScanResult& result) {
   result.points_left_out = 0;
   result.points_on_body = 0;
+  result.points_far = 0;
   if (scan.points_map.empty()) return;
   choose_box(scan);
   cast(scan, result);
@@ -202,6 +284,7 @@ void LiveWindow::insert(const Scan& scan, ScanResult& result) {
 void LiveWindow::cast(const Scan& scan, ScanResult& result) {
   const bool one_origin = scan.origins_map.size() == 1;
   const double range = scan.max_range_m / resolution_m_;
+  const double near = SensorWatch::kNear_m / resolution_m_;
   const bool has_body = scan.body_radius_m > 0.0 && !scan.body_path_map.empty();
   const Vec3 body = has_body ? to_voxels(scan.body_path_map.back()) : Vec3::Zero();
   const double body_radius = has_body ? scan.body_radius_m / resolution_m_ : -1.0;
@@ -212,15 +295,17 @@ void LiveWindow::cast(const Scan& scan, ScanResult& result) {
     if (!one_origin) from = scan.origins_map[i] / resolution_m_ - lower;
     const Vec3 to = scan.points_map[i] / resolution_m_ - lower;
     const Vec3 ray = to - from;
-    const double length = ray.norm();
+    const double length_2 = ray.squaredNorm();
+    result.points_far += std::int64_t(length_2 > near * near);
     // Many drivers write a missing return as the sensor's own place: it would block that voxel.
-    if (!std::isfinite(length) || length <= kShortest_voxels) {
+    if (!std::isfinite(length_2) || length_2 <= kShortest_voxels * kShortest_voxels) {
       ++result.points_left_out;
-    } else if ((to - body).squaredNorm() < body_radius * body_radius && has_body) {
+    } else if (has_body && (to - body).squaredNorm() < body_radius * body_radius) {
       ++result.points_on_body;
     } else if (!box_empty_) {
-      const bool hits = length <= range;
-      rays_.cast(from, hits ? to : Vec3(from + ray * (range / length)), hits, held);
+      const bool hits = length_2 <= range * range;
+      const Vec3 end = hits ? to : Vec3(from + ray * (range / std::sqrt(length_2)));
+      rays_.cast(from, end, hits, held);
     }
   }
 }
@@ -253,7 +338,7 @@ void LiveWindow::clear_voxel(Index3 v) {
   const BrickMap::Bits* bits = map_.find(brick);
   const BrickMap::Word raw = bits != nullptr ? bits->raw[std::size_t(row)] : 0;
   const BrickMap::Word known = bits != nullptr ? bits->known[std::size_t(row)] : 0;
-  odds_.clear(odds_.open(flat(brick), bits), row, bit);
+  odds_.settle(odds_.open(flat(brick), bits), row, bit, 0);
   map_.write(brick, row, raw & ~bit, known | bit);
 }
 

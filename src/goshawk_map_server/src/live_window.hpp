@@ -6,6 +6,7 @@
 
 #include "brick_archive.hpp"
 #include "goshawk/map_server/live_map.hpp"
+#include "goshawk/map_server/map_journal.hpp"
 #include "odds_store.hpp"
 #include "ray_scan.hpp"
 
@@ -22,7 +23,8 @@ class LiveWindow {
   const BrickMap& map() const { return map_; }
   GridGeometry geometry() const;
 
-  /// What a file knows: into the window, or kept beside it if the window follows.
+  /// What a file knows takes the place of what was known there: in the window, and kept beside it
+  /// if the window follows.
   void fill(const RawVoxels& raw);
   void grow() { map_.regrow(); }
 
@@ -36,6 +38,10 @@ class LiveWindow {
   void list_changes(std::vector<Brick>& bricks);
 
   const BrickArchive& archive() const { return archive_; }
+  /// What left the window or was never in it.
+  std::vector<JournalBrick> bricks_outside() const;
+  /// The window and what is kept beside it. @return map_too_large beyond max_voxels
+  Result<RawVoxels> world(std::int64_t max_voxels) const;
   std::int64_t memory_bytes() const;
 
  private:
@@ -45,6 +51,8 @@ class LiveWindow {
   void choose_box(const Scan& scan);
   void integrate();
   void clear_voxel(Index3 voxel);
+  void fill_brick(Index3 brick, const BrickMap::Bits& bits);
+  Index3 corner_of(Index3 brick) const;
   Vec3 lower_voxel() const;  // of the window, on the raster
   Vec3 to_voxels(const Vec3& p_map) const;
   std::size_t flat(Index3 brick) const;

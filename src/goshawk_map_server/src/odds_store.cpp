@@ -68,10 +68,12 @@ void OddsStore::step(std::int32_t slot, int row, Word missed, Word hit, Word& ra
   surely_free &= ~hit;
 }
 
-void OddsStore::clear(std::int32_t slot, int row, Word voxels) {
+void OddsStore::settle(std::int32_t slot, int row, Word free, Word occupied) {
   Odds& odds = pool_[std::size_t(slot)];
-  for_bits(voxels, [&](int x) { odds.value[row][x] = std::int8_t(model_.least); });
-  odds.surely_free[std::size_t(row)] |= voxels;
+  for_bits(free, [&](int x) { odds.value[row][x] = std::int8_t(model_.least); });
+  for_bits(occupied, [&](int x) { odds.value[row][x] = std::int8_t(model_.most); });
+  Word& surely_free = odds.surely_free[std::size_t(row)];
+  surely_free = (surely_free | free) & ~occupied;
 }
 
 void OddsStore::shift(const std::vector<std::int64_t>& from) {

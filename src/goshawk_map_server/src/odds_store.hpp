@@ -24,8 +24,10 @@ class OddsStore {
 
   /// One scan's step for a row. @param slot from open() @param raw, known of the row; changed
   void step(std::int32_t slot, int row, Word missed, Word hit, Word& raw, Word& known);
-  /// As sure as can be that these voxels are free.
-  void clear(std::int32_t slot, int row, Word voxels);
+  /// As sure as can be that these voxels are free, and those obstacles.
+  void settle(std::int32_t slot, int row, Word free, Word occupied);
+  /// @return the slot of a brick that was opened, else -1
+  std::int32_t find(std::size_t brick) const { return slots_[brick]; }
 
   /// @param from of each brick of the window: the brick that it was before, or -1
   void shift(const std::vector<std::int64_t>& from);

@@ -13,48 +13,15 @@ namespace {
 
 using Word = RayScan::Word;
 
-constexpr int kFraction = 32;  // bits of a place along the rows
+// Rays that wait for each other: more go along with others that have as far to go, until they leave
+// the cache.
+constexpr std::size_t kWaiting = 512;
+constexpr std::size_t kStride = 131;  // a prime
 
 bool holds(Index3 size, Index3 v) {
   return unsigned(v.x) < unsigned(size.x) && unsigned(v.y) < unsigned(size.y) &&
          unsigned(v.z) < unsigned(size.z);
 }
-
-// Where a ray is along its rows at the faces across another axis: the first place, and the way
-// between two of them. No place lies beyond the ray's ends.
-struct Places {
-  std::int64_t next, advance;
-
-  Places(const Ray& ray, const Crossings& c)
-      : next(at(ray, ray.from.x(), c.next)), advance(c.count < 2 ? 0 : at(ray, 0.0, c.every)) {
-    const std::int64_t low = std::int64_t{std::min(ray.x.first, ray.x.last)} << kFraction;
-    const std::int64_t high =
-        ((std::int64_t{std::max(ray.x.first, ray.x.last)} + 1) << kFraction) - 1;
-    next = std::clamp(next, low, high);
-    if (c.count < 2) return;
-    const std::int64_t last = next + (c.count - 1) * advance;
-    if (last < low || last > high) advance = (std::clamp(last, low, high) - next) / (c.count - 1);
-  }
-
- private:
-  static std::int64_t at(const Ray& ray, double from, std::int64_t time) {
-    const double voxels = from + ray.way.x() * (double(time) / double(Crossings::kEnd));
-    return std::int64_t(voxels * double(std::int64_t{1} << kFraction));
-  }
-};
-
-// The voxels of a word from one on, and up to one.
-struct Masks {
-  std::array<Word, 64> from{}, to{};
-
-  constexpr Masks() {
-    for (unsigned k = 0; k < 64; ++k) {
-      from[k] = ~Word{0} << k;
-      to[k] = ~Word{0} >> (63 - k);
-    }
-  }
-};
-constexpr Masks kMasks;
 
 // Bit k of word i becomes bit i of word k.
 void transpose(std::span<Word, 64> words) {
@@ -76,6 +43,12 @@ void RayScan::Bits::clear(Index3 voxels) {
   missed.assign(std::size_t(plane) * std::size_t((size.x + 63) / 64), 0);
 }
 
+RayScan::RayScan(Walking walking)
+    : walk_rows_(walking == Walking::fastest ? walk_rows_avx2() : nullptr), order_(kWaiting) {
+  if (walk_rows_ == nullptr) walk_rows_ = walk_rows;
+  for (Waiting& waiting : waiting_) waiting.walks.resize(kWaiting);
+}
+
 void RayScan::begin(Index3 lower, Index3 counts) {
   lower_ = lower;
   counts_ = counts;
@@ -83,65 +56,57 @@ void RayScan::begin(Index3 lower, Index3 counts) {
   rows_.clear(size_);
   columns_.clear({size_.y, size_.x, size_.z});
   hit_.assign(rows_.missed.size(), 0);
+  for (Waiting& waiting : waiting_) waiting.count = 0;
 }
 
-// Where rays are marked; apart from the scan, so that a write does not make it be read again.
-struct RayScan::Marks {
-  Word* missed;
-  std::int64_t plane;
-
-  // The voxels low .. high of a row.
-  void put(std::int64_t row, int low, int high) const {
-    const Word from = kMasks.from[unsigned(low) % 64], to = kMasks.to[unsigned(high) % 64];
-    Word* word = missed + (row + (low >> 6) * plane);
-    if ((low >> 6) == (high >> 6)) {
-      *word |= from & to;
-      return;
-    }
-    *word |= from;
-    for (int w = (low >> 6) + 1; w < (high >> 6); ++w) *(word += plane) = ~Word{0};
-    word[plane] |= to;
-  }
-};
-
-// From row to row up to the voxel `last`, which is not marked. Masks in place of branches: which
-// face comes next cannot be foretold.
-template <bool kInside, bool kUp>
-void RayScan::walk(Bits& bits, const Ray& ray, Index3 last) {
+// A ray that the box does not hold, from row to row: what lies outside is left out.
+template <bool kUp>
+void RayScan::walk_through(Bits& bits, const Ray& ray, Index3 last) {
+  const RowBits rows = bits.rows();
   const Index3 size = bits.size;
-  const Marks marks{bits.missed.data(), bits.plane};
-  const Places at_y(ray, ray.y), at_z(ray, ray.z);
-  std::int64_t place_y = at_y.next, place_z = at_z.next;
-  const std::int64_t advance_y = at_y.advance, advance_z = at_z.advance;
-  std::int64_t until_z = ray.z.next - ray.y.next;  // from the next face across y
-  const std::int64_t every_y = ray.y.every, both = ray.y.every + ray.z.every;
-  int x = ray.x.first, y = ray.y.first, z = ray.z.first;
-  const int step_y = ray.y.step, step_z = ray.z.step;
-  std::int64_t row = std::int64_t{z} * size.y + y;
-  const std::int64_t row_y = step_y, row_more = std::int64_t{step_z} * size.y - step_y;
-  const auto put = [&](int low, int high) {
-    if constexpr (kInside) return marks.put(row, low, high);
+  RayWalk walk(ray, last, size.y);
+  int y = ray.y.first, z = ray.z.first;
+  const auto put = [&](std::int64_t row, std::int64_t low, std::int64_t high) {
     if (unsigned(y) >= unsigned(size.y) || unsigned(z) >= unsigned(size.z)) return;
-    low = std::max(low, 0);
-    high = std::min(high, size.x - 1);
-    if (low <= high) marks.put(row, low, high);
+    low = std::max<std::int64_t>(low, 0);
+    high = std::min<std::int64_t>(high, size.x - 1);
+    if (low <= high) rows.put(row, low, high);
   };
-  for (int n = std::abs(last.y - y) + std::abs(last.z - z); n > 0; --n) {
-    const std::int64_t by_z = until_z >> 63;
-    const auto place = int((place_y ^ ((place_y ^ place_z) & by_z)) >> kFraction);
-    const int to = kUp ? std::max(x, place) : std::min(x, place);
-    put(kUp ? x : to, kUp ? to : x);
-    x = to;
-    until_z += (both & by_z) - every_y;
-    place_y += advance_y & ~by_z;
-    place_z += advance_z & by_z;
-    row += row_y + (row_more & by_z);
-    if constexpr (!kInside) {
-      y += step_y & ~int(by_z);
-      z += step_z & int(by_z);
-    }
+  const auto left = [](int at, int step, int count) { return step > 0 ? at >= count : at < 0; };
+  while (walk.rows_left > 0) {
+    const std::int64_t row = walk.row, x = walk.x;
+    const bool by_z = walk.step<kUp>() != 0;
+    put(row, kUp ? x : walk.x, kUp ? walk.x : x);
+    (by_z ? z : y) += by_z ? ray.z.step : ray.y.step;
+    if (left(y, ray.y.step, size.y) || left(z, ray.z.step, size.z)) return;
   }
-  if (kUp ? x < last.x : x > last.x) put(kUp ? x : last.x + 1, kUp ? last.x - 1 : x);
+  if (kUp ? walk.x < last.x : walk.x > last.x) {
+    put(walk.row, kUp ? walk.x : last.x + 1, kUp ? last.x - 1 : walk.x);
+  }
+}
+
+// In the order of how far they have to go, by counting.
+void RayScan::walk(Bits& bits, Waiting& waiting, bool up) {
+  constexpr std::size_t kBins = 512;
+  const std::span<RayWalk> walks(waiting.walks.data(), std::exchange(waiting.count, 0));
+  const auto bin = [](const RayWalk& w) { return std::min(std::size_t(w.rows_left), kBins - 1); };
+  std::array<std::uint16_t, kBins + 1> begin{};
+  for (const RayWalk& w : walks) ++begin[bin(w) + 1];
+  for (std::size_t k = 1; k <= kBins; ++k) begin[k] = std::uint16_t(begin[k] + begin[k - 1]);
+  // Not in the order in which they came: neighbours would wait for each other's words.
+  const std::size_t stride = walks.size() % kStride != 0 ? kStride % walks.size() : 1;
+  for (std::size_t n = 0, k = 0; n < walks.size(); ++n) {
+    order_[begin[bin(walks[k])]++] = std::uint16_t(k);
+    k += stride;
+    if (k >= walks.size()) k -= walks.size();
+  }
+  walk_rows_(bits.rows(), walks, {order_.data(), walks.size()}, up);
+}
+
+void RayScan::walk_waiting() {
+  for (std::size_t k = 0; k < waiting_.size(); ++k) {
+    if (waiting_[k].count > 0) walk(k / 2 == 0 ? rows_ : columns_, waiting_[k], k % 2 == 1);
+  }
 }
 
 void RayScan::cast(const Vec3& from, const Vec3& to, bool hits, const BrickMap* held) {
@@ -164,10 +129,13 @@ void RayScan::cast(const Vec3& from, const Vec3& to, bool hits, const BrickMap* 
       last = Grazing(*held, {64 * lower_.x, 8 * lower_.y, 8 * lower_.z}, along_y).first_held(ray);
     }
   }
-  if (ends_inside && holds(bits.size, ray.first())) {
-    return ray.x.step > 0 ? walk<true, true>(bits, ray, last) : walk<true, false>(bits, ray, last);
+  const bool up = ray.x.step > 0;
+  if (!ends_inside || !holds(bits.size, ray.first())) {
+    return up ? walk_through<true>(bits, ray, last) : walk_through<false>(bits, ray, last);
   }
-  return ray.x.step > 0 ? walk<false, true>(bits, ray, last) : walk<false, false>(bits, ray, last);
+  Waiting& waiting = waiting_[2 * std::size_t(along_y) + std::size_t(up)];
+  waiting.walks[waiting.count] = RayWalk(ray, last, bits.size.y);
+  if (++waiting.count == kWaiting) walk(bits, waiting, up);
 }
 
 void RayScan::add_columns() {

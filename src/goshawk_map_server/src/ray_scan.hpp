@@ -1,11 +1,13 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "goshawk/core/brick_map.hpp"
 #include "ray.hpp"
+#include "ray_walk.hpp"
 
 namespace goshawk::map_server {
 
@@ -17,6 +19,10 @@ class RayScan {
  public:
   using Word = BrickMap::Word;
   static constexpr int kLine = 8;  // rows of a line: those of one brick with the same z
+
+  /// How rays are walked. The bits are the same.
+  enum class Walking { fastest, one_by_one };
+  explicit RayScan(Walking walking = Walking::fastest);
 
   /// Clears, for the bricks lower <= b < lower + counts of the map.
   void begin(Index3 lower, Index3 counts);
@@ -32,6 +38,7 @@ class RayScan {
   /// was touched, in the order of their place; both point to 8 words. A voxel may be in both.
   template <typename Visit>
   void for_lines(Visit&& visit) {
+    walk_waiting();
     add_columns();
     for (int x = 0; x < counts_.x; ++x) {
       for (int z = 0; z < size_.z; ++z) {
@@ -49,7 +56,8 @@ class RayScan {
   }
 
   std::size_t memory_bytes() const {
-    return 8 * (rows_.missed.size() + columns_.missed.size() + hit_.size());
+    return 8 * (rows_.missed.size() + columns_.missed.size() + hit_.size()) +
+           waiting_.size() * waiting_.front().walks.size() * sizeof(RayWalk);
   }
 
  private:
@@ -57,20 +65,30 @@ class RayScan {
   struct Bits {
     Index3 size;               // [voxels]
     std::int64_t plane = 0;    // words of all rows with the same 64 of the first axis
-    std::vector<Word> missed;  // ((first / 64) * size z + z) * size of the second + second
+    std::vector<Word> missed;  // as RowBits
 
     void clear(Index3 voxels);
+    RowBits rows() { return {missed.data(), plane}; }
   };
-  struct Marks;
+  /// Rays that are walked together, once there are enough: of one direction along the same rows.
+  struct Waiting {
+    std::vector<RayWalk> walks;
+    std::size_t count = 0;
+  };
 
-  template <bool kInside, bool kUp>
-  static void walk(Bits& bits, const Ray& ray, Index3 last);
+  template <bool kUp>
+  static void walk_through(Bits& bits, const Ray& ray, Index3 last);
+  void walk(Bits& bits, Waiting& waiting, bool up);
+  void walk_waiting();
   void add_columns();
 
   Index3 lower_, counts_;  // [bricks]
   Index3 size_;            // [voxels]
   Bits rows_, columns_;    // along x; along y, with x and y exchanged
   std::vector<Word> hit_;  // as rows_
+  WalkRows walk_rows_;
+  std::array<Waiting, 4> waiting_;    // along y: + 2; up: + 1
+  std::vector<std::uint16_t> order_;  // of the rays that are walked together
 };
 
 }  // namespace goshawk::map_server

@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <set>
 #include <tuple>
+#include <vector>
 
 #include "goshawk/core/random.hpp"
 #include "scan_support.hpp"
@@ -196,6 +198,53 @@ TEST(RayScan, AThingInFrontOfAWallIsPassedThroughWhenItHasLeft) {
   for (int y = 11; y <= 13; ++y) {
     for (int x = 37; x < 40; ++x) EXPECT_TRUE(seen.missed.contains({x, y, 8})) << x << ' ' << y;
   }
+}
+
+// Every word of a scan, by its place: for scans that are too large for sets of voxels.
+std::vector<std::uint64_t> words_of(RayScan& scan) {
+  std::vector<std::uint64_t> words;
+  scan.for_lines(
+      [&](Index3 brick, int first_row, const RayScan::Word* missed, const RayScan::Word* hit) {
+        words.push_back((std::uint64_t(brick.x) << 40) + (std::uint64_t(brick.y) << 24) +
+                        (std::uint64_t(brick.z) << 8) + std::uint64_t(first_row));
+        words.insert(words.end(), missed, missed + RayScan::kLine);
+        words.insert(words.end(), hit, hit + RayScan::kLine);
+      });
+  return words;
+}
+
+TEST(RayScan, RaysThatAreWalkedTogetherSetTheBitsThatTheySetOneByOne) {
+  Random random(5);
+  const BrickMap map = floor_map();
+  RayScan together, alone(RayScan::Walking::one_by_one);
+  for (const int rays : {1, 3, 4, 5, 700, 20000}) {
+    const Index3 counts{3, 20, 6};
+    together.begin({-1, 0, 0}, counts);
+    alone.begin({-1, 0, 0}, counts);
+    const Vec3 origin(20.3, 77.7, 21.1);  // most rays begin and end inside of the box
+    for (int k = 0; k < rays; ++k) {
+      const bool on_raster = k % 11 == 0;
+      const Vec3 from = k % 5 == 0 ? place(random, -10.0, 60.0, on_raster) : origin;
+      Vec3 to = origin + place(random, -75.0, 75.0, on_raster);
+      if (k % 3 == 0) to.z() = from.z();
+      if (k % 7 == 0) to.x() = from.x();
+      const bool hits = k % 2 == 0;
+      const BrickMap* held = k % 4 == 0 ? &map : nullptr;
+      together.cast(from, to, hits, held);
+      alone.cast(from, to, hits, held);
+    }
+    const auto words = words_of(together);
+    EXPECT_FALSE(words.empty());
+    EXPECT_EQ(words, words_of(alone)) << rays;
+  }
+}
+
+TEST(RayScan, AScanThatWasNotReadIsForgottenByBegin) {
+  RayScan scan;
+  scan.begin({}, {1, 1, 1});
+  scan.cast(Vec3(1.5, 1.5, 1.5), Vec3(60.5, 6.5, 6.5), true, nullptr);
+  scan.begin({}, {1, 1, 1});
+  EXPECT_TRUE(words_of(scan).empty());
 }
 
 }  // namespace

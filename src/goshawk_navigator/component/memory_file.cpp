@@ -1,34 +1,21 @@
 #include "memory_file.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <string_view>
 
 #include "goshawk/runtime/message_type.hpp"
+#include "goshawk/stage/memory_file.hpp"
 
 namespace goshawk::navigator {
 namespace {
 
-namespace msg = goshawk_msgs::msg;
-using Bytes = std::vector<unsigned char>;
+using Bytes = stage::MemoryBytes;
 
-constexpr std::string_view kMagic = "goshawk navigator memory 1\n";
+constexpr std::string_view kKind = "goshawk navigator memory 2";
 constexpr std::size_t kMostLegs = 64;
-
-/// FNV-1a
-std::uint64_t checksum(const unsigned char* bytes, std::size_t count) {
-  std::uint64_t hash = 0xCBF29CE484222325ULL;
-  for (std::size_t i = 0; i < count; ++i) hash = (hash ^ bytes[i]) * 0x100000001B3ULL;
-  return hash;
-}
 
 template <typename Number>
 void put(Bytes& bytes, Number number) {
@@ -81,19 +68,20 @@ class Reader {
 };
 
 Error broken() {
-  return fail(ErrorCode::io_failed, "it is cut off, was changed, or is of another version");
+  return fail(ErrorCode::io_failed, "what it says is not understood");
 }
 
 }  // namespace
 
 Bytes to_bytes(const StoredMemory& stored) {
-  Bytes bytes(kMagic.begin(), kMagic.end());
+  Bytes bytes;
   const Memory& memory = stored.memory;
   put(bytes, std::uint8_t(memory.state));
   put(bytes, std::uint8_t(memory.open));
   put(bytes, memory.newest_id);
-  for (const double value : {memory.goal.position_map.x(), memory.goal.position_map.y(),
-                             memory.goal.position_map.z(), memory.goal.yaw_rad}) {
+  for (const double value :
+       {memory.goal.position_map.x(), memory.goal.position_map.y(), memory.goal.position_map.z(),
+        memory.goal.yaw_rad, memory.goal.v_max_m_s}) {
     put(bytes, value);
   }
   put(bytes, std::uint64_t(memory.reason.code));
@@ -105,21 +93,13 @@ Bytes to_bytes(const StoredMemory& stored) {
     put(bytes, std::uint64_t(encoded.size()));
     bytes.insert(bytes.end(), encoded.begin(), encoded.end());
   }
-  put(bytes, checksum(bytes.data(), bytes.size()));
-  return bytes;
+  return stage::framed(kKind, bytes);
 }
 
 Result<StoredMemory> from_bytes(const Bytes& bytes) {
-  constexpr std::size_t kSum = sizeof(std::uint64_t);
-  if (bytes.size() < kMagic.size() + kSum) return broken();
-  const unsigned char* end = bytes.data() + bytes.size() - kSum;
-  std::uint64_t sum = 0;
-  std::memcpy(&sum, end, kSum);
-  if (!std::equal(kMagic.begin(), kMagic.end(), bytes.begin()) ||
-      sum != checksum(bytes.data(), bytes.size() - kSum)) {
-    return broken();
-  }
-  Reader reader(bytes.data() + kMagic.size(), end);
+  const auto content = stage::unframed(kKind, bytes);
+  if (!content) return content.error();
+  Reader reader(content->data(), content->data() + content->size());
   StoredMemory stored;
   const auto state = reader.number<std::uint8_t>();
   stored.memory.state = State(state);
@@ -127,6 +107,7 @@ Result<StoredMemory> from_bytes(const Bytes& bytes) {
   stored.memory.newest_id = reader.number<std::uint64_t>();
   for (double& value : stored.memory.goal.position_map) value = reader.number<double>();
   stored.memory.goal.yaw_rad = reader.number<double>();
+  stored.memory.goal.v_max_m_s = reader.number<double>();
   const auto code = reader.number<std::uint64_t>();
   if (code >= all_error_codes().size()) return broken();
   stored.memory.reason = {all_error_codes()[code], reader.text()};
@@ -135,35 +116,22 @@ Result<StoredMemory> from_bytes(const Bytes& bytes) {
     stored.legs.push_back(reader.message<PublishedLeg>());
   }
   const Goal& goal = stored.memory.goal;
-  const bool sensible = state <= std::uint8_t(State::failed) && goal.position_map.allFinite() &&
-                        std::isfinite(goal.yaw_rad) && legs <= kMostLegs;
+  const bool sensible = state <= std::uint8_t(State::held) && goal.position_map.allFinite() &&
+                        std::isfinite(goal.yaw_rad) && std::isfinite(goal.v_max_m_s) &&
+                        legs <= kMostLegs;
   if (!reader.at_end() || !sensible) return broken();
   return stored;
 }
 
 Status write_memory(const std::string& path, const StoredMemory& stored) {
-  const Bytes bytes = to_bytes(stored);
-  const std::string draft = path + ".new";
-  std::ofstream file(draft, std::ios::binary | std::ios::trunc);
-  file.write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
-  file.close();
-  std::error_code error;
-  if (file) std::filesystem::rename(draft, path, error);
-  if (file && !error) return success();
-  return fail(ErrorCode::io_failed,
-              fmt::format("{} cannot be written ({}): a restarted navigator will not know its goal",
-                          path, error ? error.message() : std::strerror(errno)));
+  return stage::replace_file(path, to_bytes(stored));
 }
 
 Result<StoredMemory> read_memory(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) {
-    const std::string why = std::strerror(errno);
-    std::error_code error;  // of a folder that may not be looked into
-    if (!std::filesystem::exists(path, error) && !error) return StoredMemory{};
-    return fail(ErrorCode::io_failed, path + " cannot be read: " + why);
-  }
-  auto stored = from_bytes(Bytes(std::istreambuf_iterator<char>(file), {}));
+  const auto bytes = stage::read_file(path);
+  if (!bytes) return bytes.error();
+  if (bytes->empty()) return StoredMemory{};
+  auto stored = from_bytes(*bytes);
   if (stored) return stored;
   return fail(stored.code(), path + " is not used: " + stored.error().message);
 }

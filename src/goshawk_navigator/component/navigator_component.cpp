@@ -1,4 +1,7 @@
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
 #include <deque>
 
 #include "goshawk/conversions/status.hpp"
@@ -7,6 +10,7 @@
 #include "goshawk/runtime/component.hpp"
 #include "goshawk/stage/intake.hpp"
 #include "goshawk/stage/map_subscription.hpp"
+#include "goshawk/stage/operator_desk.hpp"
 #include "memory_file.hpp"
 
 namespace goshawk::navigator {
@@ -28,12 +32,31 @@ std::uint8_t to_msg(State state) {
                 std::uint8_t(State::planning) == constants::STATE_PLANNING &&
                 std::uint8_t(State::flying) == constants::STATE_FLYING &&
                 std::uint8_t(State::arrived) == constants::STATE_ARRIVED &&
-                std::uint8_t(State::failed) == constants::STATE_FAILED);
+                std::uint8_t(State::failed) == constants::STATE_FAILED &&
+                std::uint8_t(State::held) == constants::STATE_HELD);
   return std::uint8_t(state);
 }
 
 /// What the navigator plans by itself, for those who read who planned.
 constexpr const char* kBrakeName = "navigator_brake";
+
+Result<std::string> sentence(const Status& status, const char* done) {
+  if (!status) return status.error();
+  return std::string(done);
+}
+
+Result<std::string> sentence(const Result<Descent>& descent) {
+  if (!descent) return descent.error();
+  constexpr std::array below{"an obstacle or the ground is below", "below, nothing was ever seen",
+                             "the map ends below"};
+  return fmt::format("descends to {} and rests there with its motors on: {}",
+                     to_text(descent->end_map), below.at(std::size_t(descent->below)));
+}
+
+Result<std::string> sentence(const Result<Vec3>& place_map) {
+  if (!place_map) return place_map.error();
+  return "climbs to " + to_text(*place_map);
+}
 
 double moved_m(const msg::StageReport& m) {
   for (const auto& counter : m.counters()) {
@@ -99,6 +122,7 @@ class NavigatorComponent : public Component {
         config_(node.parameters<Config>([this](const Config& c) { return reconfigure(c); })),
         navigator_(config_, first_id(node.now_ns())),
         reporter_(node, StageRole::navigator, "navigator"),
+        desk_(node, reporter_),
         requests_(node.advertise<msg::PlanRequest>("plan_request", Qos::reliable_last())),
         commits_(node.advertise<msg::CommittedTrajectory>("committed_trajectory", Qos::latched())),
         states_(node.advertise<msg::NavigatorState>("navigator_state", Qos::latched(20))),
@@ -129,7 +153,16 @@ class NavigatorComponent : public Component {
   void subscribe() {
     node_.subscribe<geometry_msgs::msg::PoseStamped>(
         "goal_pose", Qos::reliable_last(),
-        [this](const geometry_msgs::msg::PoseStamped& m, const MessageInfo&) { on_goal(m); });
+        [this](const geometry_msgs::msg::PoseStamped& m, const MessageInfo&) {
+          const auto pose = conversions::from_msg(m);
+          on_goal(pose ? Result<Goal>(Goal{pose->position_map, pose->yaw_rad}) : pose.error());
+        });
+    node_.subscribe<msg::Goal>(
+        "goal", Qos::reliable_last(),
+        [this](const msg::Goal& m, const MessageInfo&) { on_goal(goal_of(m)); });
+    node_.subscribe<msg::OperatorCommand>(
+        "operator_command", Qos::reliable_last(),
+        [this](const msg::OperatorCommand& m, const MessageInfo&) { on_command(m); });
     node_.subscribe<nav_msgs::msg::Odometry>(
         "odom", Qos::best_effort(),
         [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) {
@@ -156,11 +189,16 @@ class NavigatorComponent : public Component {
         Writers::one("tracking_state"));
   }
 
-  void on_goal(const geometry_msgs::msg::PoseStamped& m) {
-    const auto goal = conversions::from_msg(m);
+  static Result<Goal> goal_of(const msg::Goal& m) {
+    if (auto s = conversions::check_frame(m.header(), conversions::kMapFrame, "a goal"); !s) {
+      return s.error();
+    }
+    return Goal{conversions::from_msg(m.position()), m.yaw(), m.v_max()};
+  }
+
+  void on_goal(const Result<Goal>& goal) {
     const Status status =
-        goal ? navigator_.on_goal(goal->position_map, goal->yaw_rad, node_.monotonic_ns())
-             : Status(goal.error());
+        goal ? navigator_.on_goal(*goal, node_.monotonic_ns()) : Status(goal.error());
     if (!status) {
       reporter_.fault(status.error());
       // The sender of this goal waits for its answer on navigator_state.
@@ -168,6 +206,26 @@ class NavigatorComponent : public Component {
         publish(StateOrder{.state = State::failed, .reason = status.error()});
       }
     }
+    carry_out();
+  }
+
+  void on_command(const msg::OperatorCommand& m) {
+    namespace verb = msg::OperatorCommand_Constants;
+    if (m.verb() > verb::VERB_TAKEOFF) return;  // the mission's
+    desk_.answer(m.id(), m.client(), [&]() -> Result<std::string> {
+      const std::int64_t now_ns = node_.monotonic_ns();
+      switch (m.verb()) {
+        case verb::VERB_HOLD:
+          navigator_.hold(now_ns);
+          return std::string("the vehicle comes to rest");
+        case verb::VERB_RESUME:
+          return sentence(navigator_.resume_held(now_ns), "flies to its goal again");
+        case verb::VERB_LAND:
+          return sentence(navigator_.land(now_ns));
+        default:
+          return sentence(navigator_.take_off(m.height(), now_ns));
+      }
+    });
     carry_out();
   }
 
@@ -338,6 +396,7 @@ class NavigatorComponent : public Component {
   Config config_;
   Navigator navigator_;
   StageReporter reporter_;
+  OperatorDesk desk_;
   Publisher<msg::PlanRequest> requests_;
   Publisher<msg::CommittedTrajectory> commits_;
   Publisher<msg::NavigatorState> states_;

@@ -173,7 +173,7 @@ void Navigator::take_up_again(std::uint64_t followed_id, std::int64_t now_ns) {
 
 // What was committed for the newest goal will not lead there.
 void Navigator::pursue_again(const Error& why, std::int64_t now_ns) {
-  if (state_ == State::failed || state_ == State::idle) return say_what_is_flown(now_ns);
+  if (has_given_up() || state_ == State::idle) return say_what_is_flown(now_ns);
   drop_open();
   if (++pursuit_.failures >= config_.max_attempts) return give_up(why, now_ns);
   reopen(0, now_ns);
@@ -222,7 +222,7 @@ void Navigator::check_legs(std::int64_t now_ns) {
 
 void Navigator::blocked(const Error& why, std::int64_t now_ns) {
   const bool brakes_now = brake(now_ns);
-  if (state_ == State::failed || (brakes() && !brakes_now)) return;
+  if (has_given_up() || (brakes() && !brakes_now)) return;
   drop_open();
   reopen(brakes_now ? schedule_.last()->start_ns() : 0, now_ns);
   enter(State::flying, now_ns, {why.code, why.message + "; planning again"});

@@ -10,15 +10,11 @@
 #include "times.hpp"
 
 namespace goshawk::navigator {
-namespace {
-
-constexpr double kTracking_s = 0.5;  // what the tracker said is believed for so long
-
-}  // namespace
+namespace {}  // namespace
 
 std::string_view to_string(State state) {
-  constexpr std::array<std::string_view, 5> names{"idle", "planning", "flying", "arrived",
-                                                  "failed"};
+  constexpr std::array<std::string_view, 6> names{"idle",    "planning", "flying",
+                                                  "arrived", "failed",   "held"};
   return names.at(std::size_t(state));
 }
 
@@ -64,18 +60,22 @@ Memory Navigator::memory() const {
           .legs = schedule_.legs()};
 }
 
-Status Navigator::on_goal(const Vec3& goal_map, double yaw_rad, std::int64_t now_ns) {
-  if (!goal_map.allFinite() || !std::isfinite(yaw_rad)) {
+Status Navigator::on_goal(const Goal& goal, std::int64_t now_ns) {
+  if (!goal.position_map.allFinite() || !std::isfinite(goal.yaw_rad)) {
     return fail(ErrorCode::invalid_input,
                 fmt::format("goal {} with yaw {:.3g} is not finite: it is ignored",
-                            to_text(goal_map), yaw_rad));
+                            to_text(goal.position_map), goal.yaw_rad));
+  }
+  if (!std::isfinite(goal.v_max_m_s) || goal.v_max_m_s < 0.0) {
+    return fail(
+        ErrorCode::invalid_input,
+        fmt::format("goal {} has a speed limit of {:.3g} m/s, which is not 0 or more: it is "
+                    "ignored",
+                    to_text(goal.position_map), goal.v_max_m_s));
   }
   const bool moves = schedule_.moves(now_ns);
   const auto revoked_ns = pursuit_.revoked_ns;
-  pursuit_ = {.goal = {goal_map, yaw_rad},
-              .open = true,
-              .lead_s = config_.replan_lead_s,
-              .wait_begin_ns = now_ns};
+  pursuit_ = {.goal = goal, .open = true, .lead_s = config_.replan_lead_s, .wait_begin_ns = now_ns};
   if (moves) pursuit_.revoked_ns = revoked_ns.value_or(now_ns);
   if (left_) left_->answers = false;
   drop_open();
@@ -105,6 +105,7 @@ void Navigator::tick(std::int64_t now_ns) {
   check_map_retry(now_ns);
   plan(now_ns);
   check_revoked(now_ns);
+  hold_on(now_ns);
   check_arrival(now_ns);
   improve(now_ns);
   say_what_is_flown(now_ns);

@@ -20,6 +20,8 @@ constexpr double kSwitchSlack_s = 0.02;
 constexpr double kBrakeAgain_s = 0.1;
 // A stage may have planned in a map that is older than the newest by so much.
 constexpr double kMapDelay_s = 1.0;
+// A tracker that was heard is started again within this time.
+constexpr double kTrackerBack_s = 60.0;
 // A revoked goal is flown to for no more leads than these.
 constexpr double kMostLeads = 3.0;
 
@@ -47,13 +49,39 @@ void Navigator::plan(std::int64_t now_ns) {
   // Odometry that was only just discovered, a trajectory that is just ending, a vehicle that brakes
   // by itself: all of these pass.
   if (odometry_is_fresh(now_ns) && at_rest()) return ask(start_at_rest(now_ns), now_ns);
-  if (now_ns - pursuit_.wait_begin_ns < to_ns(config_.settle_timeout_s)) return;
-  give_up(fail(ErrorCode::tracking_lost,
-               odometry_is_fresh(now_ns)
-                   ? "the vehicle moves without a trajectory and does not come to rest"
-                   : "no odometry comes, so there is nowhere to plan from: is the vehicle, or the "
-                     "simulator, running?"),
-          now_ns);
+  if (odometry_is_fresh(now_ns) && waits_for_tracker(now_ns)) return;
+  const std::int64_t begin_ns = std::max(pursuit_.wait_begin_ns, pursuit_.settle_begin_ns);
+  if (now_ns - begin_ns < to_ns(config_.settle_timeout_s)) return;
+  give_up(why_it_does_not_rest(now_ns), now_ns);
+}
+
+Error Navigator::why_it_does_not_rest(std::int64_t now_ns) const {
+  if (!odometry_is_fresh(now_ns)) {
+    return fail(ErrorCode::tracking_lost,
+                "no odometry comes, so there is nowhere to plan from: is the vehicle, or the "
+                "simulator, running?");
+  }
+  if (tracker_is_silent(now_ns)) {
+    return fail(ErrorCode::stage_silent,
+                "the tracker is silent, and the vehicle flies by its own failsafe: is the tracker "
+                "running?");
+  }
+  return fail(ErrorCode::tracking_lost,
+              "the vehicle moves without a trajectory and does not come to rest");
+}
+
+bool Navigator::tracker_is_silent(std::int64_t now_ns) const {
+  return tracked_ && now_ns - tracked_->ns >= to_ns(kTracking_s);
+}
+
+// A vehicle whose tracker is silent is flown by its own failsafe, at last down to the ground. It
+// settles once a tracker is back.
+bool Navigator::waits_for_tracker(std::int64_t now_ns) {
+  if (!tracker_is_silent(now_ns) || now_ns - pursuit_.wait_begin_ns >= to_ns(kTrackerBack_s)) {
+    return false;
+  }
+  pursuit_.settle_begin_ns = now_ns;
+  return true;
 }
 
 Navigator::Start Navigator::start_in_flight(std::int64_t now_ns) const {
@@ -86,6 +114,18 @@ Navigator::Start Navigator::start_at_rest(std::int64_t now_ns) const {
           .yaw_rate_rad_s = (vehicle_.q_map_base * vehicle_.angular_velocity_base).z()};
 }
 
+// The parameters', or the goal's own speed limit if that is lower.
+Limits Navigator::limits_from(const Start& start) const {
+  Limits limits = start.time_ns ? config_.limits_in_flight() : config_.limits();
+  const double own_m_s = pursuit_.goal.v_max_m_s;
+  if (own_m_s <= 0.0) return limits;
+  limits.v_max_m_s = std::min(limits.v_max_m_s, own_m_s);
+  if (limits.v_max_vertical_m_s > 0.0) {
+    limits.v_max_vertical_m_s = std::min(limits.v_max_vertical_m_s, own_m_s);
+  }
+  return limits;
+}
+
 void Navigator::ask(const Start& start, std::int64_t now_ns) {
   newest_id_ = next_id_++;
   open(start, newest_id_, now_ns);
@@ -102,7 +142,7 @@ void Navigator::open(const Start& start, std::uint64_t id, std::int64_t now_ns) 
   request.start_yaw_rate_rad_s = start.yaw_rate_rad_s;
   request.goal.position = pursuit_.goal.position_map;
   request.goal_yaw_rad = pursuit_.goal.yaw_rad;
-  request.limits = start.time_ns ? config_.limits_in_flight() : config_.limits();
+  request.limits = limits_from(start);
   request.deadline_s = config_.plan_timeout_s;
   request.supersedes = std::exchange(dropped_id_, 0);
   request.unknown = config_.unknown;

@@ -149,6 +149,47 @@ TEST(Navigator, DoesNotPlanFromRestWhileTheVehicleMovesByItself) {
   EXPECT_EQ(h.plans.size(), 1u);
 }
 
+// Its failsafe lands it meanwhile, for longer than it would take to settle.
+TEST(Navigator, WhileTheTrackerIsStartedAgainAGoalWaitsForTheVehicleToRest) {
+  Harness h;
+  h.navigator.on_tracking(0, false, h.now);
+  h.drift = Vec3(0, 0, -0.3);
+  h.pass(1.0);  // nothing more of the tracker
+  h.goal(kGoal);
+  h.pass(20.0);
+  EXPECT_EQ(h.navigator.state(), State::planning);
+  h.navigator.on_tracking(0, false, h.now);  // it is back
+  h.drift.setZero();
+  h.pass(0.1);
+  ASSERT_EQ(h.plans.size(), 1u);
+  h.answer();
+  h.pass(5.0);
+  EXPECT_EQ(h.navigator.state(), State::arrived);
+}
+
+TEST(Navigator, AVehicleThatMovesBesideALivingTrackerIsNotWaitedForForLong) {
+  Harness h;
+  h.drift = Vec3(0, 0, -0.3);
+  h.goal(kGoal);
+  for (int i = 0; i < 60; ++i) {
+    h.navigator.on_tracking(0, false, h.now);
+    h.pass(0.1);
+  }
+  EXPECT_EQ(h.navigator.state(), State::failed);
+  EXPECT_EQ(h.last().reason.code, ErrorCode::tracking_lost);
+}
+
+TEST(Navigator, ATrackerThatNeverComesBackIsNamed) {
+  Harness h;
+  h.navigator.on_tracking(0, false, h.now);
+  h.drift = Vec3(0, 0, -0.3);
+  h.goal(kGoal);
+  h.pass(70.0);
+  EXPECT_EQ(h.navigator.state(), State::failed);
+  EXPECT_EQ(h.last().reason.code, ErrorCode::stage_silent);
+  EXPECT_THAT(h.last().reason.message, HasSubstr("the tracker is silent"));
+}
+
 TEST(Navigator, AVehicleThatEndsElsewhereHasNotArrivedAndIsSentAgain) {
   Config config;
   config.max_attempts = 2;

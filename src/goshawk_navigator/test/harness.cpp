@@ -62,7 +62,7 @@ void Harness::pass(double seconds) {
     now += kStep;
     if (odometry_comes) {
       const FlatState s = vehicle();
-      navigator.on_odometry(at(s.position + offset, s.velocity, yaw_rad), now);
+      navigator.on_odometry(at(s.position + offset, s.velocity + drift, yaw_rad), now);
     }
     navigator.tick(now);
     take();

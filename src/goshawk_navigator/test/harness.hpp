@@ -55,6 +55,7 @@ class Harness {
   std::int64_t now = 10 * kSecond;
   bool odometry_comes = true;
   Vec3 offset = Vec3::Zero();
+  Vec3 drift = Vec3::Zero();  // [m/s] of a vehicle that something else moves
   double yaw_rad = 0.0;
   std::optional<YawCurve> yaw_curve;  // of the answers
   std::uint64_t map_version = 5;      // of the answers

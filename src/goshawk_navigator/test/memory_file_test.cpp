@@ -14,7 +14,7 @@ namespace {
 StoredMemory in_flight() {
   StoredMemory stored{.memory = {.state = State::flying,
                                  .newest_id = 1'790'000'000'123,
-                                 .goal = {Vec3(3.5, 6.1, 1.1), -0.75},
+                                 .goal = {Vec3(3.5, 6.1, 1.1), -0.75, 0.8},
                                  .open = true,
                                  .reason = {ErrorCode::not_at_start, "0.9 m away"}},
                       .legs = std::vector<PublishedLeg>(2)};
@@ -43,6 +43,7 @@ TEST_F(MemoryFile, GivesBackWhatWasWrittenLast) {
   EXPECT_EQ(read->memory.newest_id, 1'790'000'000'123u);
   EXPECT_EQ(read->memory.goal.position_map, Vec3(3.5, 6.1, 1.1));
   EXPECT_EQ(read->memory.goal.yaw_rad, -0.75);
+  EXPECT_EQ(read->memory.goal.v_max_m_s, 0.8);
   EXPECT_TRUE(read->memory.open);
   EXPECT_EQ(read->memory.reason.code, ErrorCode::not_at_start);
   EXPECT_EQ(read->memory.reason.message, "0.9 m away");

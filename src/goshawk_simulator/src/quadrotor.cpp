@@ -56,6 +56,7 @@ Quadrotor::Quadrotor(const Config& config, const PlantFactory& make_plant)
       wind_(wind_of(config), kStep_s),
       sensor_(config.sensor, kStep_ns),
       hold_(config.vehicle, config.failsafe_tilt_rad),
+      fallback_(config.vehicle, config.failsafe_tilt_rad, config.fallback_tolerance_m),
       guard_(config.landing, config.land_height_m),
       command_timeout_ns_(std::llround(config.command_timeout_s * 1e9)),
       landing_ns_(command_timeout_ns_ + std::llround(config.failsafe_hold_s * 1e9)) {
@@ -87,7 +88,8 @@ Status Quadrotor::reset(const Vec3& position_map, double yaw_rad) {
   hold_.engage_at(position_map, yaw_rad);
   control_ = Control::failsafe;
   not_landing_ = {ErrorCode::ok, ""};
-  was_commanded_ = false;
+  was_commanded_ = flies_fallback_ = false;
+  fallback_.forget();
   disturbance_map_.setZero();
   remainder_ns_ = 0;
   return success();
@@ -101,6 +103,7 @@ Status Quadrotor::command(const AttitudeSetpoint& command) {
   control_ = Control::commanded;
   not_landing_ = {ErrorCode::ok, ""};
   was_commanded_ = true;
+  flies_fallback_ = false;
   return success();
 }
 
@@ -145,23 +148,33 @@ void Quadrotor::learn_disturbance(const Vec3& last_velocity_map) {
 AttitudeSetpoint Quadrotor::onboard_target() {
   watch_commands();
   if (control_ == Control::commanded) return command_;
+  if (flies_fallback_) return fallback_.step(state(), time_ns_, disturbance_map_);
   if (control_ == Control::landing) {
     hold_.lower(config_.land_speed_m_s * kStep_s, config_.land_height_m);
   }
   return hold_.step(state(), disturbance_map_);
 }
 
-// When commands stop coming, the vehicle holds, then lands.
+// When commands stop coming, the vehicle comes to rest, holds, then lands.
 void Quadrotor::watch_commands() {
   const std::int64_t silent_ns = time_ns_ - command_time_ns_;
-  if (control_ == Control::commanded && silent_ns >= command_timeout_ns_) {
-    control_ = Control::failsafe;
-    hold_.engage(state());
+  if (control_ == Control::commanded && silent_ns >= command_timeout_ns_) lose_commands();
+  if (flies_fallback_) {
+    if (const auto end = fallback_.ended(time_ns_)) {
+      hold_.engage_at(*end, yaw_of(state().q_map_base));
+      flies_fallback_ = false;
+    }
   }
-  if (control_ == Control::failsafe && was_commanded_ && !hold_.braking() &&
+  if (control_ == Control::failsafe && was_commanded_ && !flies_fallback_ && !hold_.braking() &&
       silent_ns >= landing_ns_ && not_landing_.code == ErrorCode::ok) {
     try_to_land();
   }
+}
+
+void Quadrotor::lose_commands() {
+  control_ = Control::failsafe;
+  flies_fallback_ = fallback_.engage(state(), time_ns_);
+  if (!flies_fallback_) hold_.engage(state());
 }
 
 // Checks once per map. It looks below the vehicle, not below the point that it holds: wind keeps

@@ -81,13 +81,17 @@ class KillNine(LegsCase):
         self.check_untouched()
 
     def test_7_tracker(self):
-        """The vehicle's own failsafe brakes. The new tracker finds the vehicle elsewhere than
-        the trajectory is and refuses it, so the navigator plans anew: the goal is reached."""
+        """The vehicle flies the fallback stop that it was given. The new tracker finds it
+        elsewhere than the trajectory is and refuses that, so the navigator plans anew: the goal is
+        reached."""
         goal, since = self.start_leg()
         self.kill("tracker")
         state = self.stack.wait_state({"arrived", "failed"}, since, 40.0)
         note(f"tracker killed: navigator said {self.said(since)}")
         self.check_untouched()
+        braked = [r["message"] for r in self.stack.reports.lines()
+                  if r["message"].startswith("commands stopped coming")]
+        self.assertTrue(any("fallback stop" in message for message in braked), braked)
         self.assertIsNotNone(state, "the leg neither ends nor fails")
         self.assertEqual(state["state"], "arrived", state)
         self.assertLess(math.dist(self.stack.place(), goal), 0.1)

@@ -85,7 +85,8 @@ class LiveMap(MapCase):
     def test_a_scan_changes_bricks_and_the_next_version(self):
         server, reports = self.run_server(
             "use_box:=true", "unknown:=occupied", "resolution_m:=0.2", "radius_m:=0.0",
-            "margin_m:=0.0", "box_x_max_m:=10.0", "box_y_max_m:=10.0", "box_z_max_m:=4.0")
+            "margin_m:=0.0", "box_x_max_m:=10.0", "box_y_max_m:=10.0", "box_z_max_m:=4.0",
+            "sensor_timeout_s:=0.0")
         updates = self.echo("map/voxels/updates")
         first = self.wait_line(self.echo("map/voxels", "--once"))
         size = (first["size_x"], first["size_y"], first["size_z"])
@@ -169,6 +170,103 @@ class LiveMap(MapCase):
         self.send_cloud(cloud(good), lambda: self.late_version() > before)
         self.assertEqual([r for r in reports.lines()[since:] if r["code"] != "ok"], [])
         self.assertTrue(server.alive())
+
+
+class SavedMap(MapCase):
+    """Maps that a running server gives and takes, what left its window included."""
+
+    WINDOW = ["use_box:=true", "follow_vehicle:=true", "unknown:=free", "resolution_m:=0.2",
+              "radius_m:=0.0", "margin_m:=0.0", "box_x_max_m:=12.8", "box_y_max_m:=8.0",
+              "box_z_max_m:=3.2", "sensor_timeout_s:=0.0"]
+
+    def fly(self, places):
+        """A wall on the left of each place."""
+        updates = self.echo("map/voxels/updates")
+        self.send_odometry((places[0], 4.1, 1.5))
+        for x in places:
+            count = len(updates.lines())
+            self.send_odometry((x, 4.1, 1.5))
+            points = [(x + 0.2 * k, 6.1, 1.5) for k in range(-10, 11)]
+            self.send_cloud(cloud(points), lambda: len(updates.lines()) > count)
+        updates.stop()
+
+    def map_json(self, *words):
+        outcome = self.sandbox.goshawk("map", *words, "--json", timeout_s=60)
+        self.assertEqual(outcome.status, 0, str(outcome))
+        return self.json_object(outcome)
+
+    def test_a_saved_map_is_taken_by_another_server_and_grows_there(self):
+        saved, again = self.sandbox.folder / "saved.bt", self.sandbox.folder / "again.bt"
+        server, reports = self.run_server(*self.WINDOW)
+        self.fly([3.0 + 2.0 * k for k in range(25)])
+        told = self.map_json("save", saved)
+        self.assertLess(told["lower_m"][0], 2.0, "what left the window is not in it")
+        self.assertGreater(told["upper_m"][0], 40.0)
+        self.assertGreater(told["occupied_voxels"], 150)
+        server.stop()
+        reports.stop()
+
+        server, reports = self.run_server(*self.WINDOW)
+        self.map_json("load", saved)
+        self.map_json("save", again)
+        self.assertTrue(self.map_json("diff", saved, again)["same"])
+        self.fly([61.0, 63.0])
+        self.map_json("save", again)
+        grown = self.map_json("diff", saved, again)
+        self.assertGreater(grown["learnt_voxels"], 20)
+        self.assertEqual(grown["forgotten_voxels"], 0)
+        self.check_refusals(saved)
+        server.stop()
+        reports.stop()
+
+        # The file as map_file: a flight begins in it.
+        self.run_server(*self.WINDOW, f"map_file:={saved}")
+        self.map_json("save", again)
+        self.assertTrue(self.map_json("diff", saved, again)["same"])
+
+    def check_refusals(self, saved):
+        coarse = self.sandbox.folder / "coarse.bt"
+        made = self.sandbox.goshawk("world", coarse, "--kind", "forest", "--size", "20,20,5",
+                                    "--density", "0.05", "--resolution", "0.5", timeout_s=60)
+        self.assertEqual(made.status, 0, str(made))
+        for words, code, sentence in [
+                (["load", coarse], "invalid_input", "of one size"),
+                (["load", self.sandbox.folder / "no.bt"], "map_unreadable", "no.bt"),
+                (["load", saved, "--namespace", "/nobody", "--timeout", "1"], "stage_silent",
+                 "/nobody/octomap_in")]:
+            outcome = self.sandbox.goshawk("map", *words, "--json", timeout_s=60)
+            self.assertEqual(outcome.status, 1, str(outcome))
+            answer = json.loads(outcome.out)
+            self.assertEqual(answer["code"], code, str(outcome))
+            self.assertIn(sentence, answer["message"])
+
+
+class SilentSensors(MapCase):
+    """A sensor that stops, or sees nothing, is told; so is its return."""
+
+    def scans_until(self, points, condition, frame="map"):
+        """Sends the cloud ten times a second."""
+        def once_more():
+            self.tell("cloud_in", "sensor_msgs/msg/PointCloud2", cloud(points, frame))
+            return until(condition, 0.1)
+        self.assertTrue(until(once_more, 30.0))
+
+    def test_each_is_told_once_with_its_frame(self):
+        _, reports = self.run_server(
+            "use_box:=true", "unknown:=free", "sensor_timeout_s:=1.0", "body_radius_m:=0.0")
+        self.send_odometry((5.0, 5.0, 2.0))
+        here = [(5.0 + 0.1 * k, 5.0, 2.0) for k in range(3)]
+
+        def told(words):
+            return [r for r in reports.lines() if words in r["message"]]
+        updates = self.echo("map/voxels/updates")
+        self.scans_until([(7.1, 5.1, 2.1)], lambda: len(updates.lines()) > 3)
+        self.scans_until(here, lambda: told("is its lens covered"))
+        self.assertIn("nearer than 0.3 m", told("is its lens covered")[0]["message"])
+        self.scans_until([(7.1, 5.1, 2.1)], lambda: told("sees again"))
+        # Nothing comes any more. A second sensor, in the body's frame, goes on.
+        self.scans_until([(2.0, 0.0, 0.0)], lambda: told("no scan of sensor 'map'"), "base_link")
+        self.assertEqual(told("no scan of sensor 'map'")[0]["code"], "stage_silent")
 
 
 class JournalOfTheMap(MapCase):

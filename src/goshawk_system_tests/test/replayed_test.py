@@ -136,15 +136,15 @@ OUTPUTS = {
     "corridor_builder": ["corridor"],
     "trajectory_optimizer": ["trajectory"],
     "navigator": ["plan_request", "committed_trajectory", "navigator_state", "navigator_alive"],
-    "tracker": ["command", "tracking_state"],
+    "tracker": ["command", "fallback_stop", "tracking_state"],
     "flight_check": [],  # reports only
     PLANT: ["odom", "odom_true", "vehicle_status", "/tf"],
 }
 REPORTING = [stage for stage in OUTPUTS if stage not in ("navigator", PLANT)]
 MEASURED = ("path", "corridor", "trajectory")  # hold compute_ns, the time that an answer took
-ALL_INPUTS = ["goal_pose", "odom", "odom_true", "command", "octomap_binary", "cloud_in", "map/*", "plan_request", "path", "corridor",
-              "trajectory", "stage_report", "committed_trajectory", "tracking_state",
-              "navigator_alive"]
+ALL_INPUTS = ["goal_pose", "odom", "odom_true", "command", "fallback_stop", "octomap_binary",
+              "cloud_in", "map/*", "plan_request", "path", "corridor", "trajectory",
+              "stage_report", "committed_trajectory", "tracking_state", "navigator_alive"]
 RECORDER = "goshawk_record"
 FLIGHT_S = 7.5  # of simulated time
 WEATHER = {"gust_deviation_m_s": 0.5, "position_noise_m": 0.002, "odometry_delay_s": 0.008}

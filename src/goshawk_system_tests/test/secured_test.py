@@ -27,6 +27,8 @@ LATER = {"tracker": set(topic_rights.MAP), "vehicle": {*topic_rights.MAP, "odom_
 class SecuredStages(StackTest):
     """The table of rights against a stack that has none."""
 
+    launch_file = "flight_mission"
+
     def info_of(self, topic):
         """Asked until it is answered: on a busy machine discovery takes longer than a call waits."""
         def asked():

@@ -64,11 +64,12 @@ class Stack:
     """Every stage launched in a world of its own, with the topics that tell what happens."""
 
     def __init__(self, sandbox, file="flight", ros_args=(), env=None, options=(),
-                 world_parameter="map_server:map_file"):
-        """@param world_parameter which parameter of which node names the world"""
+                 world_parameter="map_server:map_file", world_options=()):
+        """@param world_parameter which parameter of which node names the world
+        @param world_options more words of `goshawk world`"""
         self.sandbox = sandbox
         self.world = sandbox.folder / "world.bt"
-        made = sandbox.goshawk("world", self.world, "--json")
+        made = sandbox.goshawk("world", self.world, "--json", *world_options)
         if made.status != 0:
             raise AssertionError(f"the world could not be made: {made}")
         self.launch = Launch(sandbox, file, "-p", f"{world_parameter}:={self.world}", *ros_args,
@@ -160,13 +161,14 @@ class StackTest(unittest.TestCase):
 
     launch_file = "flight"
     ros_args = ()
+    world_options = ()  # of the made world
 
     @classmethod
     def setUpClass(cls):
         cls.sandbox = Sandbox()
         try:
             cls.stack = Stack(cls.sandbox, cls.launch_file, cls.ros_args, cls.launch_env(),
-                              cls.launch_options())
+                              cls.launch_options(), world_options=cls.world_options)
             cls.stack.wait_ready()
         except BaseException:
             cls.sandbox.close()

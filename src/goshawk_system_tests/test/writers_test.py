@@ -26,6 +26,7 @@ GUARDED = {
     "odom": ("nav_msgs/msg/Odometry", "simulator",
              {"tracker", "navigator", "map_server", "flight_check"}),
     "command": ("goshawk_msgs/msg/AttitudeSetpoint", "tracker", {"simulator"}),
+    "fallback_stop": ("goshawk_msgs/msg/FallbackStop", "tracker", {"simulator"}),
     "tracking_state": ("goshawk_msgs/msg/TrackingState", "tracker", {"navigator"}),
     "vehicle_status": ("goshawk_msgs/msg/VehicleStatus", "simulator", {"flight_check"}),
     "stage_report": ("goshawk_msgs/msg/StageReport", "path_search", {"navigator"}),

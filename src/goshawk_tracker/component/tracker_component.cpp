@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "goshawk/conversions/plan.hpp"
 #include "goshawk/conversions/status.hpp"
@@ -22,6 +23,7 @@ using namespace goshawk::stage;
 namespace msg = goshawk_msgs::msg;
 
 constexpr double kClockStep_s = 0.02;  // less is not worth a sentence
+constexpr std::int64_t kFallbackPeriod_ns = 50'000'000;
 
 Tracker make_tracker(const Config& config) {
   auto tracker = Tracker::create(config);
@@ -86,8 +88,8 @@ class StepStatistics {
 };
 
 /// committed_trajectory, odom, navigator_alive, map/voxels, stage_report of flight_check ->
-/// command, tracking_state. Counts on the monotonic clock: what others stamp with their wall clocks
-/// is brought to it once, when it arrives. Maps come in another thread.
+/// command, fallback_stop, tracking_state. Counts on the monotonic clock: what others stamp with
+/// their wall clocks is brought to it once, when it arrives. Maps come in another thread.
 class TrackerComponent : public Component {
  public:
   explicit TrackerComponent(Node& node)
@@ -100,6 +102,7 @@ class TrackerComponent : public Component {
         reporter_(node, StageRole::tracker, config_.controller),
         map_(node),
         commands_(node.advertise<msg::AttitudeSetpoint>("command", Qos::best_effort())),
+        fallbacks_(node.advertise<msg::FallbackStop>("fallback_stop", Qos::best_effort())),
         states_(node.advertise<msg::TrackingState>("tracking_state", Qos::best_effort())) {
     node.subscribe<msg::CommittedTrajectory>(
         "committed_trajectory", Qos::latched(),
@@ -175,9 +178,8 @@ class TrackerComponent : public Component {
     const std::uint64_t id = commit.trajectory.id();
     Timing timing{.wire_ns = commit.wire_ns};
     if (!release->verdict) return reporter_.failed(id, release->verdict.error(), timing);
-    const auto [status, compute_ns] = timed([&] {
-      return tracker_.accept(std::move(commit.trajectory), commit.start_ns, now_ns);
-    });
+    const auto [status, compute_ns] = timed(
+        [&] { return tracker_.accept(std::move(commit.trajectory), commit.start_ns, now_ns); });
     timing.compute_ns = compute_ns;
     if (!status) return reporter_.failed(id, status.error(), timing);
     accepted_ = timing;
@@ -199,7 +201,22 @@ class TrackerComponent : public Component {
     command_message_.header(conversions::make_header(node_.now_ns()));
     reporter_.send(commands_, command_message_);
     take_waiting();
+    publish_fallback(now_ns);
     publish_state(sent_stamp_ns);
+  }
+
+  // What the vehicle flies if this process falls silent: in advance, and anew when what is flown
+  // has changed. The moments do not depend on when the tracker was started.
+  void publish_fallback(std::int64_t now_ns) {
+    const TrackingStatus status = tracker_.status();
+    const Flown flown{status.mode, status.trajectory_id, status.lost_trajectory_id,
+                      now_ns / kFallbackPeriod_ns};
+    if (!flown_) flown_ = flown;
+    if (flown == *flown_ || !tracker_.make_fallback(fallback_, now_ns)) return;
+    flown_ = flown;
+    conversions::fill_msg(fallback_, fallback_message_);
+    fallback_message_.header(conversions::make_header(node_.now_ns()));
+    reporter_.send(fallbacks_, fallback_message_);
   }
 
   void report_clock(double set_by_s) {
@@ -260,6 +277,15 @@ class TrackerComponent : public Component {
     reporter_.send(states_, m);
   }
 
+  /// Changes with what is flown, and with time.
+  struct Flown {
+    Mode mode;
+    std::uint64_t id;
+    std::uint64_t lost_id;
+    std::int64_t period;
+    bool operator==(const Flown&) const = default;
+  };
+
   Node& node_;
   Config config_;
   Tracker tracker_;
@@ -269,8 +295,12 @@ class TrackerComponent : public Component {
   StageReporter reporter_;
   BackgroundMap map_;
   Publisher<msg::AttitudeSetpoint> commands_;
+  Publisher<msg::FallbackStop> fallbacks_;
   Publisher<msg::TrackingState> states_;
   msg::AttitudeSetpoint command_message_;
+  msg::FallbackStop fallback_message_;
+  FallbackStop fallback_;
+  std::optional<Flown> flown_;  // when the last one was sent
   StepStatistics steps_;
   Timing accepted_;       // of the newest trajectory that was
   std::string reported_;  // the newest fault's sentence

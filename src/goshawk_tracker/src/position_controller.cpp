@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "goshawk/tracker/flatness.hpp"
+#include "goshawk/core/flatness.hpp"
 
 namespace goshawk::tracker {
 namespace {

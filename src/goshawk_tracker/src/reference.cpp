@@ -111,6 +111,14 @@ bool Reference::at_rest(std::int64_t time_ns) const {
   return t.rate == 0.0 || t.s >= path_duration_s();
 }
 
+double Reference::seconds_to_rest(std::int64_t from_ns) const {
+  if (at_rest(from_ns)) return 0.0;
+  const bool stops_before_the_end =
+      brake_ && brake_->path_time_s + brake_->duration_s / 2.0 <= path_duration_s();
+  return stops_before_the_end ? seconds(from_ns, brake_->begin_ns) + brake_->duration_s
+                              : seconds_until(path_duration_s(), from_ns);
+}
+
 double Reference::progress_s(std::int64_t time_ns) const {
   if (!committed_) return 0.0;
   return std::clamp(curve_ ? left_at_s_ : path_time(time_ns).s, 0.0, duration_s_);

@@ -7,14 +7,16 @@
 #include <utility>
 
 #include "clock_time.hpp"
+#include "goshawk/core/flatness.hpp"
 #include "goshawk/tracker/admission.hpp"
-#include "goshawk/tracker/flatness.hpp"
 
 namespace goshawk::tracker {
 namespace {
 
 const Error kNoFault{ErrorCode::ok, ""};
 constexpr double kSayStall_s = 1.0;
+constexpr double kLongestWait_s = 5.0;  // for a vehicle to come to rest by itself
+constexpr double kSlow_m_s = 0.4;       // a landing, or nearly at rest: it is stopped within 0.2 m
 // Beyond these no odometry is true, and squares of it would not be finite.
 constexpr double kFarthest_m = 1e6;
 constexpr double kFastest_m_s = 1e3;
@@ -142,6 +144,7 @@ Result<AttitudeSetpoint> Tracker::step(const RigidBodyState& state, std::int64_t
     refused_ = status.error();
     return status.error();
   }
+  if (auto status = check_rest(state, stamp_ns, now_ns); !status) return status.error();
   if (seconds(stalled_ns_, now_ns) > kSayStall_s) stalled_ = kNoFault;
   take_in(state, stamp_ns, now_ns);
   if (auto status = check_agreement(now_ns); !status) {
@@ -199,6 +202,25 @@ Status Tracker::check_odometry(const RigidBodyState& state, std::int64_t stamp_n
   return success();
 }
 
+// A first odometry of a vehicle that moves: this tracker does not know on which path. The vehicle
+// does, if another tracker gave it a fallback stop.
+Status Tracker::check_rest(const RigidBodyState& state, std::int64_t stamp_ns,
+                           std::int64_t now_ns) {
+  const bool first = !has_state_ || stamp_ns < stamp_ns_;
+  const double speed = state.velocity_map.norm();
+  if (!first || speed <= kSlow_m_s) {
+    moves_since_ns_.reset();
+    return success();
+  }
+  if (!moves_since_ns_) moves_since_ns_ = now_ns;
+  if (seconds(*moves_since_ns_, now_ns) > kLongestWait_s) return success();
+  has_state_ = false;
+  return fail(ErrorCode::tracking_lost,
+              fmt::format("the vehicle flies at {:.2g} m/s and this tracker has only just started: "
+                          "no command goes out until the vehicle has come to rest by itself",
+                          speed));
+}
+
 // The state, and what a first one, a restarted clock, a gap or a jump mean for the reference.
 void Tracker::take_in(const RigidBodyState& state, std::int64_t stamp_ns, std::int64_t now_ns) {
   const bool restarted = has_state_ && stamp_ns < stamp_ns_;
@@ -222,7 +244,9 @@ void Tracker::take_in(const RigidBodyState& state, std::int64_t stamp_ns, std::i
   has_state_ = true;
   state_ = state;
   state_.q_map_base.normalize();
-  if (jump > config_.max_jump_m) {
+  if (first && state.velocity_map.norm() > config_.start_velocity_tolerance_m_s) {
+    stop_where_it_is(Vec3::Zero(), stamp_ns, now_ns);
+  } else if (jump > config_.max_jump_m) {
     stop_after_jump(jump, now_ns);
   } else if (whereabouts_lost_ && check_agreement(now_ns)) {
     find_again(last_stamp_ns, now_ns);
@@ -278,10 +302,10 @@ double Tracker::turn(std::int64_t now_ns) {
   return change / dt;
 }
 
-FlatState Tracker::reference_at(std::int64_t time_ns) const {
+const Reference& Tracker::flown_at(std::int64_t time_ns) const {
   const auto next = std::find_if(queue_.rbegin(), queue_.rend(),
                                  [&](const auto& queued) { return queued.start_ns() <= time_ns; });
-  return next == queue_.rend() ? reference_.at(time_ns) : next->at(time_ns);
+  return next == queue_.rend() ? reference_ : *next;
 }
 
 TrackingStatus Tracker::status() const {

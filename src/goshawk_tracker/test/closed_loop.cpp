@@ -8,6 +8,7 @@
 namespace goshawk::tracker {
 namespace {
 
+constexpr std::int64_t kFallbackPeriod_ns = 50'000'000;
 constexpr std::size_t kSocketHolds = 100;  // messages; later ones are dropped
 
 }  // namespace
@@ -19,7 +20,7 @@ ClosedLoop::ClosedLoop(const Config& tracker_config, const simulator::Config& ve
       link(std::move(with_link)) {}
 
 void ClosedLoop::run_until(std::int64_t end_ns, const std::function<void()>& each) {
-  while (vehicle.time_ns() < end_ns) {
+  while (now_ns() < end_ns) {
     exchange();
     ASSERT_TRUE(vehicle.advance(0.001));
     if (vehicle.control() == simulator::Control::failsafe) ++failsafe_ms;
@@ -27,16 +28,28 @@ void ClosedLoop::run_until(std::int64_t end_ns, const std::function<void()>& eac
   }
 }
 
+void ClosedLoop::stop_everything(double pause_s, double world_s) {
+  kept_.push_back(measure());
+  ASSERT_TRUE(vehicle.advance(world_s));
+  paused_ns_ += std::llround((pause_s - world_s) * 1e9);
+}
+
+simulator::Measurement ClosedLoop::measure() {
+  auto measured = vehicle.measure();
+  measured.time_ns += paused_ns_;
+  return measured;
+}
+
 void ClosedLoop::exchange() {
-  const std::int64_t now = vehicle.time_ns();
+  const std::int64_t now = now_ns();
   if (now >= next_odometry_ns_) {
     next_odometry_ns_ = now + (link.gap_ns ? link.gap_ns() : link.period_ns);
     if (now < stalled_until_ns) {
-      if (kept_.size() < kSocketHolds) kept_.push_back(vehicle.measure());
+      if (kept_.size() < kSocketHolds) kept_.push_back(measure());
     } else {
       if (watched) tracker.watch(now);
       for (; !kept_.empty(); kept_.pop_front()) take(kept_.front(), now);
-      if (connected) take(vehicle.measure(), now);
+      if (connected) take(measure(), now);
     }
   }
   for (; !arrivals_.empty() && arrivals_.front().time_ns <= now; arrivals_.pop_front()) {
@@ -52,6 +65,21 @@ void ClosedLoop::take(const simulator::Measurement& measured, std::int64_t now) 
     last_error = command.error();
   } else if (!link.drop || !link.drop()) {
     arrivals_.push_back({now + link.odometry_delay_ns + link.command_delay_ns, *command});
+  }
+  give_fallback(now);
+}
+
+// One that does not pass the vehicle is refused by it: that is what the upsets are about.
+void ClosedLoop::give_fallback(std::int64_t now) {
+  const auto status = tracker.status();
+  const std::uint64_t id = status.trajectory_id ^ status.lost_trajectory_id;
+  if (now < next_fallback_ns_ && id == fallback_for_) return;
+  if (!tracker.make_fallback(fallback_, now + link.odometry_delay_ns)) return;
+  next_fallback_ns_ = now + kFallbackPeriod_ns;
+  fallback_for_ = id;
+  ASSERT_TRUE(fallback_.check()) << fallback_.check().error().message;
+  if (const Status given = vehicle.set_fallback(fallback_); !given) {
+    ASSERT_EQ(given.code(), ErrorCode::not_at_start);
   }
 }
 

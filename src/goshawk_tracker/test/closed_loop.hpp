@@ -43,6 +43,12 @@ class ClosedLoop {
     double max_m = 0.0;
     double final_m = 0.0;
   };
+  /// The monotonic clock of all: the world's time, and the time that it stood still.
+  std::int64_t now_ns() const { return vehicle.time_ns() + paused_ns_; }
+  /// Nothing runs for so long, the vehicle's world included: of the pause it lives through world_s.
+  /// What is on its way waits in the sockets.
+  void stop_everything(double pause_s, double world_s);
+
   /// Runs until the given time; `each` is called every millisecond.
   void run_until(std::int64_t end_ns, const std::function<void()>& each = {});
   /// Accepts the trajectory, flies it, and `rest_s` beyond its end.
@@ -64,9 +70,15 @@ class ClosedLoop {
     AttitudeSetpoint command;
   };
   void exchange();
+  simulator::Measurement measure();
   void take(const simulator::Measurement& measured, std::int64_t now_ns);
+  void give_fallback(std::int64_t now_ns);
 
+  std::int64_t paused_ns_ = 0;
   std::int64_t next_odometry_ns_ = 0;
+  std::int64_t next_fallback_ns_ = 0;
+  std::uint64_t fallback_for_ = 0;  // the trajectory that the newest is about
+  FallbackStop fallback_;
   std::deque<Arrival> arrivals_;
   std::deque<simulator::Measurement> kept_;
 };

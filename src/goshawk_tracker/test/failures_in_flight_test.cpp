@@ -35,7 +35,8 @@ std::shared_ptr<const VoxelGrid> room(double table_m) {
 }
 
 struct Flight {
-  explicit Flight(const Config& tracker = {}) : loop(tracker, anywhere()) {
+  explicit Flight(const Config& tracker = {}, const simulator::Config& vehicle = anywhere())
+      : loop(tracker, vehicle) {
     EXPECT_TRUE(loop.vehicle.reset({0, 0, 1}, 0.0));
     loop.run_until(kSecond / 2);
     EXPECT_TRUE(loop.tracker.accept(ten_metres(), loop.vehicle.time_ns()));
@@ -45,8 +46,10 @@ struct Flight {
   ClosedLoop loop;
 };
 
-TEST(FailuresInFlight, WithoutTheTrackerTheVehicleBrakesOnItsOwnAndOnItsLine) {
-  Flight flight;
+TEST(FailuresInFlight, WithoutTheTrackerOrAFallbackStopTheVehicleBrakesStraightAhead) {
+  simulator::Config vehicle = anywhere();
+  vehicle.fallback_tolerance_m = 0.0;
+  Flight flight({}, vehicle);
   auto& loop = flight.loop;
   const Vec3 lost_at = loop.vehicle.state().position_map;
   loop.connected = false;

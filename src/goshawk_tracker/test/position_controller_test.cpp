@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "goshawk/core/flatness.hpp"
 #include "goshawk/core/random.hpp"
-#include "goshawk/tracker/flatness.hpp"
 
 namespace goshawk::tracker {
 namespace {

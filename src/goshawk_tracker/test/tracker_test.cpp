@@ -134,7 +134,8 @@ TEST(Tracker, WhatWaitsIsBounded) {
   ASSERT_TRUE(tracker.step(at({0, 0, 1}), 0));
   int accepted = 0;
   for (int k = 0; k < 50; ++k) {
-    const auto status = tracker.accept(line(std::uint64_t(k + 1), {0, 0, 1}, {0.01, 0, 1}, 1.0 + k), 0);
+    const auto status =
+        tracker.accept(line(std::uint64_t(k + 1), {0, 0, 1}, {0.01, 0, 1}, 1.0 + k), 0);
     accepted += int(status.ok());
     EXPECT_THAT(status.code(), testing::AnyOf(ErrorCode::ok, ErrorCode::not_at_start));
   }
@@ -150,6 +151,7 @@ TEST(Tracker, ATrajectoryThatBeganIsJoinedWhereItShouldBeByNow) {
   auto tracker = make();
   const auto committed = line(1, {0, 0, 1}, {2, 0, 1}, 0.0);
   const auto there = committed.trajectory.sample(1.0);
+  ASSERT_TRUE(tracker.step(at(there.position), ns(0.99)));
   ASSERT_TRUE(tracker.step(at(there.position, there.velocity), ns(1.0)));
   ASSERT_TRUE(tracker.accept(committed, ns(1.0)));
   ASSERT_TRUE(tracker.step(at(there.position, there.velocity), ns(1.0)));

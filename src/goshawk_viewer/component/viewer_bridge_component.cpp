@@ -20,7 +20,7 @@ struct Config {
   std::string address = "127.0.0.1";
   int port = 8765;
   std::string origins = kDefaultOrigins;
-  std::string publish_topics = "goal_pose";
+  std::string publish_topics = "goal_pose,operator_command";
   int queue_mb = 32;
   int clients = 16;
 };

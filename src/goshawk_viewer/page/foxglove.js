@@ -14,8 +14,9 @@ Goshawk.FoxgloveClient = class {
     this.socket.binaryType = 'arraybuffer';
     this.socket.onopen = () => {
       this.onState('connected');
-      this.say({op: 'advertise', channels: [{id: 1, topic: 'goal_pose', encoding: 'json',
-                                             schemaName: 'geometry_msgs/msg/PoseStamped'}]});
+      this.say({op: 'advertise', channels: [
+        {id: 1, topic: 'goal_pose', encoding: 'json', schemaName: 'geometry_msgs/msg/PoseStamped'},
+        {id: 2, topic: 'operator_command', encoding: 'json', schemaName: 'goshawk_msgs/msg/OperatorCommand'}]});
     };
     this.socket.onmessage = event => {
       if (typeof event.data === 'string') this.onText(JSON.parse(event.data));
@@ -54,12 +55,18 @@ Goshawk.FoxgloveClient = class {
   }
 
   sendGoal(p) {
-    const body = new TextEncoder().encode(JSON.stringify({
-      header: {frame_id: 'map'},
-      pose: {position: {x: p[0], y: p[1], z: p[2]}, orientation: {w: 1}}}));
+    this.publish(1, {header: {frame_id: 'map'},
+                     pose: {position: {x: p[0], y: p[1], z: p[2]}, orientation: {w: 1}}});
+  }
+
+  // verb: a constant of OperatorCommand; a command that is sent again has the same id
+  sendCommand(id, verb) { this.publish(2, {id, client: 'page', verb}); }
+
+  publish(channel, message) {
+    const body = new TextEncoder().encode(JSON.stringify(message));
     const frame = new Uint8Array(5 + body.length);
     frame[0] = 1;
-    new DataView(frame.buffer).setUint32(1, 1, true);
+    new DataView(frame.buffer).setUint32(1, channel, true);
     frame.set(body, 5);
     this.socket.send(frame);
   }

@@ -5,6 +5,12 @@ const kTracked = 12000;  // samples of the flown track that are kept
 const kStages = ['map_server', 'path_search', 'corridor_builder', 'trajectory_optimizer', 'navigator',
                  'tracker', 'vehicle', 'flight_check', 'viewer'];
 
+// Of OperatorCommand.
+const kVerbs = {hold: 0, resume: 1, resumeMission: 4};
+const kAskAgain_ms = 300;  // a command is sent again until a stage answers ...
+const kAsked = 20;         // ... so often at the most
+const kNear = 3;           // [m] obstacles farther away are not looked for
+
 const seconds = stamp => stamp.sec + 1e-9 * stamp.nanosec;
 const xyz = p => [p.x, p.y, p.z];
 
@@ -24,12 +30,14 @@ Goshawk.LivePage = class extends Goshawk.Page {
     this.makePlots(null);
     this.state = {link: 'connecting', mode: '', text: ''};
     this.bindGoal();
+    this.bindCommands();
     this.client = new Goshawk.FoxgloveClient(this.url, {
       'map/voxels': m => this.onGrown(m), 'map/voxels/updates': m => this.onUpdate(m),
       octomap_binary: m => this.onMap(m),
       path: m => this.onPath(m), committed_trajectory: m => this.onTrajectory(m),
       odom: m => this.onOdometry(m), navigator_state: m => this.onNavigator(m),
-      stage_report: m => this.onReport(m),
+      stage_report: m => this.onReport(m), vehicle_status: m => { this.battery = m.battery; },
+      mission_state: m => { this.mission = m; }, operator_answer: m => this.onAnswer(m),
     }, text => this.setLink(text));
     this.tell();
   }
@@ -69,6 +77,7 @@ Goshawk.LivePage = class extends Goshawk.Page {
   }
 
   onGrown(m) {
+    this.mapStamp = seconds(m.header.stamp);
     if (!this.view) return;
     const voxels = Goshawk.Voxels.fromWords(
         xyz(m.origin), m.resolution, [m.size_x, m.size_y, m.size_z], m.grown);
@@ -79,6 +88,7 @@ Goshawk.LivePage = class extends Goshawk.Page {
 
   // Bricks that changed. An update that does not follow is dropped: the whole map comes soon after.
   onUpdate(m) {
+    this.mapStamp = seconds(m.header.stamp);
     const grown = this.view && this.view.maps.grown;
     if (!grown || grown.version !== m.from_version) return;
     grown.moveWindow([m.shift_word_x, m.shift_brick_y, m.shift_brick_z], grown.unknown);
@@ -136,6 +146,7 @@ Goshawk.LivePage = class extends Goshawk.Page {
     const p = xyz(m.pose.pose.position), o = m.pose.pose.orientation;
     const speed = V3.norm(xyz(m.twist.twist.linear));
     this.pose = {p, q: [o.w, o.x, o.y, o.z]};
+    this.speed = speed;
     if (last && t < last.t - 1) this.track = [];  // a new simulation
     if (last && t - last.t < 0.02) return;
     this.track.push({t, p, v: this.toMap(m.twist.twist.linear, o)});
@@ -164,6 +175,71 @@ Goshawk.LivePage = class extends Goshawk.Page {
     this.state.mode = m.state;
     this.state.text = m.code === 'ok' ? '' : `${m.code}: ${m.message}`;
     this.tell();
+  }
+
+  // The state at one glance. Distances are to obstacles as they were measured.
+  showGlance() {
+    const obstacles = this.view && this.view.maps.obstacles;
+    const rows = Goshawk.glance({
+      mode: this.missionText() || this.state.mode, pose: this.pose, speed: this.speed, leg: this.leg, now: this.now,
+      obstacle: obstacles ? Goshawk.nearestObstacle(obstacles, this.pose.p, kNear) : null,
+      mapAge: this.mapStamp === undefined ? null : this.now - this.mapStamp,
+      battery: this.battery >= 0 ? this.battery : null});
+    $('glance').replaceChildren(...rows.flatMap(([name, value]) => {
+      const dt = document.createElement('dt'), dd = document.createElement('dd');
+      dt.textContent = name;
+      dd.textContent = value;
+      return [dt, dd];
+    }));
+  }
+
+  missionText() {
+    const m = this.mission;
+    if (!m || !['flying', 'waiting', 'paused'].includes(m.state)) return '';
+    return `${this.state.mode}, mission ${m.state}: waypoint ${m.waypoint} of ${m.waypoints}`;
+  }
+
+  // Sent again until it is answered: the stage carries it out once.
+  command(name) {
+    clearInterval(this.asking);
+    const id = Date.now(), verb = kVerbs[name];
+    let asked = 0;
+    const ask = () => {
+      const linked = this.state.link === 'connected';
+      if (linked) this.client.sendCommand(id, verb);
+      this.state.text = linked ? `${name}: sent` : `${name}: not sent, no connection`;
+      if (++asked > kAsked) {
+        clearInterval(this.asking);
+        this.state.text = `${name}: nobody answers`;
+      }
+      this.tell();
+    };
+    this.asked = id;
+    this.asking = setInterval(ask, kAskAgain_ms);
+    ask();
+  }
+
+  onAnswer(m) {
+    if (m.client !== 'page' || m.id !== this.asked) return;
+    clearInterval(this.asking);
+    this.answered = m;
+    this.state.text = m.code === 'ok' ? m.message : `${m.code}: ${m.message}`;
+    this.tell();
+  }
+
+  // Space holds, whatever has the focus, except while somebody types.
+  bindCommands() {
+    const waits = () => this.mission && ['paused', 'failed'].includes(this.mission.state);
+    $('hold').addEventListener('click', () => this.command('hold'));
+    $('resume').addEventListener('click', () => this.command(waits() ? 'resumeMission' : 'resume'));
+    window.addEventListener('keydown', event => {
+      if (event.key !== ' ' || event.target.type === 'text') return;
+      event.preventDefault();
+      if (!event.repeat) this.command('hold');
+    });
+    window.addEventListener('keyup', event => {  // a button with the focus is not pressed as well
+      if (event.key === ' ' && event.target.type !== 'text') event.preventDefault();
+    });
   }
 
   // Maps may change ten times a second: drawing them takes at most a fifth of the time.
@@ -206,6 +282,7 @@ Goshawk.LivePage = class extends Goshawk.Page {
     this.drawn = time;
     this.fresh = false;
     if (this.view && this.track.length > 1) this.view.setFlown(this.track);
+    this.showGlance();
     const style = this.style(), span = [this.now - kPlotted, this.now];
     Object.values(this.curves).forEach((points, k) => {
       while (points.length && points[0][0] < span[0]) points.shift();

@@ -10,7 +10,8 @@ import pathlib
 import sys
 
 SCRIPTS = ["geometry.js", "theme.js", "map_meshes.js", "vehicle.js", "sight.js", "scene.js", "plots.js",
-           "panel.js", "flight.js", "cdr.js", "octomap.js", "foxglove.js", "live.js", "start.js"]
+           "panel.js", "flight.js", "cdr.js", "octomap.js", "foxglove.js", "glance.js", "live.js",
+           "start.js"]
 MESSAGES = ["geometry.js", "theme.js", "octomap.js", "sight.js"]
 THREE = ["three.min.js", "examples/js/controls/OrbitControls.js",
          "examples/js/lines/LineSegmentsGeometry.js", "examples/js/lines/LineGeometry.js",

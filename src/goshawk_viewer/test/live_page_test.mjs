@@ -48,6 +48,19 @@ const told = await page.evaluate(address => new Promise(resolve => {
 }), bridge);
 check(/may not publish/.test(told), `a command for the motors: ${told}`);
 
+// Space holds it in flight; Resume flies on.
+await page.evaluate(() => document.activeElement.blur());
+await page.keyboard.press(' ');
+check(await until(page, () => goshawk.seen.includes('held')), 'the space bar holds it');
+check(await until(page, () => goshawk.speed < 0.05), 'it rests');
+const before = await page.evaluate(() => goshawk.seen.length);
+await page.click('#resume');
+check(await until(page, from => goshawk.seen.slice(from).includes('flying'), before), 'Resume flies on');
+const glance = await page.evaluate(() => document.getElementById('glance').innerText);
+for (const name of ['mode', 'position', 'altitude', 'speed', 'to go', 'nearest obstacle', 'map']) {
+  check(glance.includes(name), `the glance tells ${name}: ${glance.replaceAll('\n', ' ')}`);
+}
+
 if (screenshot) await page.screenshot({path: screenshot});
 check(await until(page, () => goshawk.seen.includes('arrived')), 'it arrives');
 check(await until(page, p => Math.hypot(

@@ -5,7 +5,7 @@ import assert from 'node:assert/strict';
 
 const [messages, page] = process.argv.slice(2);
 const {Goshawk, V3} = new Function(
-    ['geometry.js', 'theme.js', 'octomap.js', 'sight.js', 'cdr.js'].map(
+    ['geometry.js', 'theme.js', 'octomap.js', 'sight.js', 'cdr.js', 'glance.js'].map(
         name => readFileSync(`${page}/${name}`, 'utf8')).join('\n') + '\nreturn {Goshawk, V3};')();
 
 const kBox = {normals: [1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1],
@@ -50,6 +50,60 @@ test('an OctoMap is read voxel by voxel, and what is cut off is refused', () => 
   }
   assert.throws(() => Goshawk.octomapVoxels(new Uint8Array(100000).fill(255), 0.5));
   assert.equal(Goshawk.octomapVoxels(new Uint8Array(0), 0.5), null);
+});
+
+test('the nearest obstacle is the one that brute force over all voxels finds', () => {
+  const voxels = new Goshawk.Voxels([-1, 2, 0], 0.25, [20, 16, 12]);
+  let seed = 7;
+  const random = () => (seed = (seed * 16807) % 2147483647) / 2147483647;
+  for (let k = 0; k < 60; ++k) voxels.cells[Math.floor(random() * voxels.cells.length)] = 1;
+  const brute = p => {
+    let least = Infinity;
+    voxels.cells.forEach((cell, at) => {
+      if (!cell) return;
+      const i = [at % 20, Math.floor(at / 20) % 16, Math.floor(at / 320)];
+      least = Math.min(least, V3.norm(i.map((c, k) => {
+        const low = voxels.origin[k] + 0.25 * c;
+        return Math.max(low - p[k], p[k] - low - 0.25, 0);
+      })));
+    });
+    return least;
+  };
+  for (let k = 0; k < 300; ++k) {
+    const p = [random() * 7 - 2, random() * 6 + 1, random() * 5 - 1];
+    const expected = brute(p), found = Goshawk.nearestObstacle(voxels, p, 1.5);
+    if (expected > 1.5) assert.equal(found, Infinity);
+    else assert.ok(Math.abs(found - expected) < 1e-9, `${p}: ${found}, not ${expected}`);
+  }
+});
+
+test('what is left of a flight is its length and time from now on', () => {
+  const line = new Goshawk.Trajectory([{duration: 5, points: [0, 1, 2, 3, 4, 5].map(x => [2 * x, 0, 1])}]);
+  const left = t => {
+    const {length, time} = Goshawk.wayLeft(line, t);
+    return [length, time].map(c => Math.round(1e6 * c) / 1e6);
+  };
+  assert.deepEqual(left(-1), [10, 6]);
+  assert.deepEqual(left(2), [6, 3]);
+  assert.deepEqual(left(9), [0, 0]);
+});
+
+test('the state at one glance leaves out what is not known', () => {
+  const leg = {start: 10, trajectory: new Goshawk.Trajectory(
+      [{duration: 5, points: [0, 1, 2, 3, 4, 5].map(x => [2 * x, 0, 1])}])};
+  assert.deepEqual(Goshawk.glance({}), [['mode', 'no navigator']]);
+  assert.deepEqual(
+      Goshawk.glance({mode: 'flying', pose: {p: [1, 2, 3]}, speed: 0.5, leg, now: 12, obstacle: 0.456,
+                      mapAge: 2.04, battery: 0.5}),
+      [['mode', 'flying'], ['position', '1.00, 2.00, 3.00 m'], ['altitude', '3.00 m'],
+       ['speed', '0.50 m/s'], ['to go', '6.0 m, 3.0 s'], ['nearest obstacle', '0.46 m'],
+       ['map', '2.0 s old'], ['battery', '50 %']]);
+  const names = rows => rows.map(([name]) => name);
+  assert.deepEqual(names(Goshawk.glance({mode: 'idle', pose: {p: [1, 2, 3]}, speed: 0, obstacle: null,
+                                         mapAge: null, battery: null})),
+                   ['mode', 'position', 'altitude', 'speed']);
+  assert.ok(Goshawk.glance({mode: 'idle', pose: {p: [1, 2, 3]}, speed: 0, obstacle: Infinity, mapAge: null,
+                            battery: null}).some(([, value]) => value === 'over 3 m'));
 });
 
 test('a voxel in a corner has the faces that can be seen, and nooks', () => {

@@ -19,15 +19,18 @@ using goshawk_msgs::msg::NavigatorState;
 using introspection::Interruptible;
 using Steady = std::chrono::steady_clock;
 
-std::string topic_in(const std::string& space, const char* name) {
-  return space == "/" ? fmt::format("/{}", name) : fmt::format("{}/{}", space, name);
-}
+constexpr double kRest_m_s = 0.1;  // a vehicle that hovers is slower
+constexpr int kRests = 20;         // messages in a row
 
 double seconds_since(Steady::time_point begin) {
   return std::chrono::duration<double>(Steady::now() - begin).count();
 }
 
 }  // namespace
+
+std::string topic_in(const std::string& space, const std::string& name) {
+  return space == "/" ? "/" + name : fmt::format("{}/{}", space, name);
+}
 
 Pilot::Pilot(introspection::Session& session, const std::string& space, Say say)
     : session_(session),
@@ -41,6 +44,7 @@ Pilot::Pilot(introspection::Session& session, const std::string& space, Say say)
         if (!odometry) return;
         position_map_ = odometry->position_map;
         speed_m_s_ = odometry->velocity_map.norm();
+        resting_ = speed_m_s_ < kRest_m_s ? resting_ + 1 : 0;
         yaw_rad_ = yaw_of(odometry->q_map_base);
       });
   session.node().subscribe<NavigatorState>(
@@ -90,21 +94,42 @@ Result<Arrival> Pilot::go(const Vec3& goal_map, std::optional<double> yaw_rad, d
   goal.pose().position(conversions::to_point(goal_map));
   goal.pose().orientation().z(std::sin(half_yaw_rad));
   goal.pose().orientation().w(std::cos(half_yaw_rad));
-  // The answer to an earlier goal is not the answer to this one.
+  forget_answers();
+  if (auto status = goals_.publish(goal); !status) return status.error();
+  return arrive(goal_map, timeout_s);
+}
+
+void Pilot::forget_answers() {
   asked_ns_ = newest_ns_;
   state_.reset();
-  if (auto status = goals_.publish(goal); !status) return status.error();
+  resting_ = 0;
+}
+
+Status Pilot::rest(double timeout_s) {
+  session_.wait_for(timeout_s, [this] { return resting_ >= kRests; });
+  if (resting_ >= kRests) return success();
+  if (Interruptible::interrupted()) return fail(ErrorCode::cancelled, "interrupted");
+  return fail(ErrorCode::deadline_exceeded,
+              fmt::format("the vehicle does not rest within {:g} s: it flies at {:.2f} m/s",
+                          timeout_s, speed_m_s_));
+}
+
+Result<Arrival> Pilot::arrive(std::optional<Vec3> sent_map, double timeout_s) {
+  const auto goal_of = [&] {
+    if (sent_map || !state_) return sent_map.value_or(*position_map_);
+    return conversions::from_msg(state_->goal());
+  };
   const auto begin = Steady::now();
   while (!is_answered() && seconds_since(begin) < timeout_s && !Interruptible::interrupted()) {
     session_.wait_for(std::min(1.0, timeout_s - seconds_since(begin)),
                       [this] { return is_answered(); });
-    if (!is_answered()) tell_progress(goal_map);
+    if (!is_answered()) tell_progress(goal_of());
   }
   if (is_answered()) {
     if (state_->state() == state::STATE_FAILED) {
       return fail(conversions::error_code_of(state_->code()), state_->message());
     }
-    return Arrival{goal_map, (*position_map_ - goal_map).norm(), seconds_since(begin)};
+    return Arrival{goal_of(), (*position_map_ - goal_of()).norm(), seconds_since(begin)};
   }
   if (Interruptible::interrupted()) {
     return fail(ErrorCode::cancelled,

@@ -12,6 +12,9 @@
 
 namespace goshawk::cli {
 
+/// "/uav1" and "odom": "/uav1/odom".
+std::string topic_in(const std::string& space, const std::string& name);
+
 /// How a goal ended.
 struct Arrival {
   Vec3 goal_map = Vec3::Zero();
@@ -27,7 +30,7 @@ class Pilot {
   /// @param space of the vehicle: "/uav1", or "/"
   Pilot(introspection::Session& session, const std::string& space, Say say);
 
-  /// Waits for odometry and for a stage that reads goals. @return stage_silent, cancelled
+  /// Waits for odometry and for a navigator. @return stage_silent, cancelled
   Status wait_ready(double timeout_s);
 
   /// @pre wait_ready() is ok
@@ -37,6 +40,14 @@ class Pilot {
   /// @return why the navigator gave the goal up, deadline_exceeded, or cancelled by Ctrl-C (the
   /// vehicle then flies on)
   Result<Arrival> go(const Vec3& goal_map, std::optional<double> yaw_rad, double timeout_s);
+
+  /// What the navigator has said until now answers nothing that follows.
+  void forget_answers();
+  /// Waits until the vehicle is at a goal that somebody has sent since forget_answers().
+  /// @param goal_map none: the navigator's @return as go()
+  Result<Arrival> arrive(std::optional<Vec3> goal_map, double timeout_s);
+  /// Waits until the vehicle rests. @return deadline_exceeded, cancelled
+  Status rest(double timeout_s);
 
  private:
   bool is_answered() const;
@@ -48,6 +59,7 @@ class Pilot {
   runtime::Publisher<geometry_msgs::msg::PoseStamped> goals_;
   std::optional<Vec3> position_map_;
   double speed_m_s_ = 0.0;
+  int resting_ = 0;  // how often in a row odometry said so
   double yaw_rad_ = 0.0;
   std::optional<goshawk_msgs::msg::NavigatorState> state_;  // since the goal was sent
   std::int64_t newest_ns_ = 0;                              // [ns] stamp of the newest state

@@ -65,10 +65,14 @@ void add_map(const Verb& bench) {
   auto cloud = std::make_shared<std::string>();
   verb->add_option("--cloud", *cloud,
                    "a scan as .pcd or .ply in its sensor's frame; default: a made hall");
+  auto processes = std::make_shared<bool>(false);
+  verb->add_flag("--processes", *processes,
+                 "instead: from a cloud's message to a planner's map, over separate processes");
   verb->footer("Example:\n  goshawk bench map --quick");
   verb.runs([=](const Console& c) {
     Json options = common_json(*common);
     options["cloud"] = *cloud;
+    options["processes"] = *processes;
     return become_bench("map", options, c);
   });
 }
@@ -149,6 +153,7 @@ void add_bench(Program& program) {
   add_plain(bench, "replan", "what it takes to plan again in a forest that unfolds");
   add_plain(bench, "trajectory", "planners: durations, speeds, optimisation and whole plans");
   add_plain(bench, "sensors", "simulated lidars and cameras: what a ray costs in each world");
+  add_plain(bench, "senses", "what the live map keeps of thin things, rain, and grazed floors");
   add_plain(bench, "tracking",
             "closed-loop flights: errors by controller, weather and plant, step times");
 }

@@ -1,11 +1,18 @@
 #include <fmt/format.h>
 
+#include <optional>
+
+#include "goshawk/conversions/geometry.hpp"
+#include "goshawk/conversions/status.hpp"
+#include "goshawk/introspection/session.hpp"
 #include "goshawk/introspection/topic_reader.hpp"
 #include "goshawk/map_server/map_file.hpp"
 #include "goshawk/map_server/map_summary.hpp"
 #include "goshawk/map_server/map_tools.hpp"
 #include "goshawk/map_server/octree.hpp"
+#include "goshawk/map_server_messages/octomap.hpp"
 #include "goshawk/runtime/message_type.hpp"
+#include "goshawk_msgs.h"
 #include "json.hpp"
 #include "octomap_msgs.h"
 #include "values.hpp"
@@ -196,28 +203,31 @@ void add_diff(const Verb& map) {
   });
 }
 
-Result<RawVoxels> decode(const std::vector<unsigned char>& bytes) {
-  octomap_msgs::msg::Octomap m;
-  if (!runtime::decode(bytes, m) || !m.binary() || m.id() != "OcTree") {
-    return fail(ErrorCode::invalid_input, "octomap_binary does not hold a binary OcTree");
-  }
-  const std::string_view payload(reinterpret_cast<const char*>(m.data().data()), m.data().size());
-  const auto tree = map_server::read_binary_payload(payload, m.resolution());
-  if (!tree) return tree.error();
-  return map_server::voxelize(**tree);
-}
+/// How a map server that runs is found.
+struct Server {
+  std::string space = "/";
+  double timeout_s = 10.0;
 
-/// The map of a map server that runs.
-Result<RawVoxels> listen(introspection::ReadOptions options, const Console& console) {
+  std::string topic(const char* name) const { return (space == "/" ? "" : space) + "/" + name; }
+};
+
+/// What comes first on a topic with maps.
+Result<RawVoxels> listen(const std::string& topic, double timeout_s, const Console& console) {
   auto session = introspection::Session::open();
   if (!session) return session.error();
-  options.topic = "octomap_binary";
+  introspection::ReadOptions options;
+  options.topic = topic;
   options.count = 1;
-  Result<RawVoxels> map = fail(ErrorCode::stage_silent, "no map came on octomap_binary");
+  options.timeout_s = timeout_s;
+  Result<RawVoxels> map =
+      fail(ErrorCode::stage_silent, fmt::format("no map came on {} in {:g} s", topic, timeout_s));
   introspection::TopicListener listener;
   listener.note = [&](const std::string& note) { console.say(note); };
   listener.message = [&](const introspection::RawMessage& message) {
-    map = decode(message.bytes);
+    octomap_msgs::msg::Octomap m;
+    map = runtime::decode(message.bytes, m)
+              ? map_server::read_octomap(m)
+              : fail(ErrorCode::invalid_input, topic + " does not hold octomap_msgs/msg/Octomap");
     return false;
   };
   if (auto status = introspection::read_topic(**session, options, listener); !status) {
@@ -226,22 +236,93 @@ Result<RawVoxels> listen(introspection::ReadOptions options, const Console& cons
   return map;
 }
 
+/// All that a map server knows; of one that does not tell, what its window holds.
+Result<RawVoxels> map_of(const Server& server, const Console& console) {
+  auto world = listen(server.topic("octomap_world"), server.timeout_s, console);
+  if (world) return world;
+  auto window = listen(server.topic("octomap_binary"), server.timeout_s, console);
+  if (window) console.say("octomap_world is silent: the file holds the map's window only");
+  return window;
+}
+
+void add_server(const Verb& verb, Server& server) {
+  verb->add_option("--namespace", server.space, "of the vehicle, as /uav1")->capture_default_str();
+  add_timeout(verb, server.timeout_s);
+}
+
 void add_save(const Verb& map) {
   struct Options {
     std::string output;
-    introspection::ReadOptions read;
+    Server server;
   };
   const Verb verb = map.word("save", "write the map that a running map server has now");
   auto o = std::make_shared<Options>();
-  o->read.timeout_s = 10.0;
   add_output(verb, o->output);
-  add_timeout(verb, o->read.timeout_s);
+  add_server(verb, o->server);
   verb->footer(
+      "What left a window that follows the vehicle is in it too.\n"
       "A flight begins in it with: goshawk launch live -p map_server:map_file:=hall.bt\n"
       "Example:\n  goshawk map save hall.bt");
   verb.runs([o](const Console& console) {
-    const auto now = listen(o->read, console);
+    const auto now = map_of(o->server, console);
     return now ? write(*now, o->output, console) : console.failed(now.error());
+  });
+}
+
+/// Sends a map to a map server that runs. @return its refusal; stage_silent
+Status send(const RawVoxels& map, const Server& server) {
+  namespace roles = goshawk_msgs::msg::StageReport_Constants;
+  auto session = introspection::Session::open();
+  if (!session) return session.error();
+  runtime::Node& node = (*session)->node();
+  const auto maps = node.advertise<octomap_msgs::msg::Octomap>(server.topic("octomap_in"),
+                                                               runtime::Qos::reliable_last(1));
+  octomap_msgs::msg::Octomap m;
+  m.header(conversions::make_header(node.now_ns()));
+  if (auto s = map_server::fill_octomap(map.geometry, map.occupied, map.known, m); !s) return s;
+  const auto request_id = std::uint64_t(conversions::to_ns(m.header().stamp()));
+  std::optional<Status> answer;
+  node.subscribe<goshawk_msgs::msg::StageReport>(
+      server.topic("stage_report"), runtime::Qos::latched(20),
+      [&](const goshawk_msgs::msg::StageReport& r, const auto&) {
+        if (r.stage() != roles::STAGE_MAP_SERVER || r.request_id() != request_id) return;
+        const ErrorCode code = conversions::error_code_of(r.code());
+        answer = code == ErrorCode::ok ? success() : Status(fail(code, r.message()));
+      });
+  if (!(*session)->wait_for(server.timeout_s, [&] { return maps.matched() > 0; })) {
+    return fail(
+        ErrorCode::stage_silent,
+        fmt::format("no map server reads {} in domain {} (waited {:g} s). Is one running, "
+                    "with the same ROS_DOMAIN_ID and namespace?",
+                    server.topic("octomap_in"), (*session)->context().domain(), server.timeout_s));
+  }
+  if (auto s = maps.publish(m); !s) return s;
+  (*session)->wait_for(server.timeout_s, [&] { return answer.has_value(); });
+  return answer.value_or(fail(ErrorCode::stage_silent,
+                              fmt::format("the map server did not answer within {:g} s: it may "
+                                          "still take the map",
+                                          server.timeout_s)));
+}
+
+void add_load(const Verb& map) {
+  struct Options {
+    std::string file;
+    Reading reading;
+    Server server;
+  };
+  const Verb verb = map.word("load", "give a map file to a running map server");
+  auto o = std::make_shared<Options>();
+  verb->add_option("file", o->file, "MAP with voxels of the map server's size")->required();
+  add_resolution(verb, o->reading);
+  add_server(verb, o->server);
+  verb->footer(
+      "What the file knows takes the place of what the map server knew there; the rest stays.\n"
+      "Example:\n  goshawk map load hall.bt");
+  verb.runs([o](const Console& console) {
+    const auto read = o->reading.read(o->file, console);
+    if (!read) return console.failed(read.error());
+    if (auto s = send(read->voxels, o->server); !s) return console.not_done(s.error());
+    return tell(o->file, read->voxels, read->summary, console);
   });
 }
 
@@ -249,9 +330,11 @@ void add_save(const Verb& map) {
 
 void add_map(Program& program) {
   const Verb map =
-      program.verb("map", "map files: look at, cut, join and compare; save a live map");
+      program.verb("map", "map files: look at, cut, join, compare, draw; save and load a live map");
   add_info(map);
   add_save(map);
+  add_load(map);
+  add_map_picture(map);
   add_crop(map);
   add_merge(map);
   add_diff(map);

@@ -37,7 +37,8 @@ void add_secure(Program& program) {
                    "with the rights of that role; may repeat");
   verb->footer(
       "Needs openssl. Roles: map_server, path_search, corridor_builder, trajectory_optimizer,\n"
-      "navigator, tracker, vehicle, flight_check, sensors, visualizer, viewer, recorder, operator.\n\n"
+      "navigator, mission, tracker, vehicle, flight_check, sensors, visualizer, viewer, recorder,\n"
+      "operator.\n\n"
       "Examples:\n"
       "  goshawk secure init keys\n"
       "  goshawk secure init keys --namespace /uav1 --like my_search=path_search\n"

@@ -38,6 +38,16 @@ void add_map_options(const Verb& verb, MapOptions& o) {
   verb->add_option("--params-file", o.params_files, "file of parameters as in ROS 2; may repeat");
 }
 
+void add_vehicle_options(const Verb& verb, VehicleOptions& o) {
+  verb->add_option("--namespace", o.space, "of the vehicle, as /uav1")->capture_default_str();
+  verb->add_option("--timeout", o.timeout_s, "[s] longest wait for the vehicle")
+      ->check(CLI::Range(0.1, 86400.0))
+      ->capture_default_str();
+  verb->add_option("--ready", o.ready_s, "[s] longest wait for the flight to be found")
+      ->check(CLI::Range(0.1, 86400.0))
+      ->capture_default_str();
+}
+
 Words component_names(const Words&) {
   return runtime::installed_components();
 }

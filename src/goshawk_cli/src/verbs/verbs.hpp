@@ -9,10 +9,16 @@ namespace goshawk::cli {
 void add_fly(Program& program);
 void add_goto(Program& program);
 void add_hold(Program& program);
+void add_resume(Program& program);
+void add_land(Program& program);
+void add_takeoff(Program& program);
+void add_mission(Program& program);
+void add_why(Program& program);
 void add_plan(Program& program);
 void add_check(Program& program);
 void add_world(Program& program);
 void add_map(Program& program);
+void add_map_picture(const Verb& map);
 void add_sense(Program& program);
 void add_campaign(Program& program);
 void add_launch(Program& program);
@@ -38,6 +44,14 @@ void describe_recording_info(const Verb& verb);
 
 /// Options that several verbs share.
 void add_map_options(const Verb& verb, MapOptions& options);
+
+/// Whom the verbs for a running flight mean, and how long they wait.
+struct VehicleOptions {
+  std::string space = "/";
+  double timeout_s = 120.0;
+  double ready_s = 5.0;
+};
+void add_vehicle_options(const Verb& verb, VehicleOptions& options);
 
 /// --timeout of verbs that look at the domain.
 void add_timeout(const Verb& verb, double& timeout_s);

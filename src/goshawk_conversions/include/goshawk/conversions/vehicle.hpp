@@ -1,6 +1,7 @@
 #pragma once
 
 #include "goshawk/conversions/geometry.hpp"
+#include "goshawk/core/fallback_stop.hpp"
 #include "goshawk/core/vehicle.hpp"
 #include "nav_msgs.h"
 
@@ -13,6 +14,11 @@ void fill_msg(const RigidBodyState& state, nav_msgs::msg::Odometry& m);
 
 Result<AttitudeSetpoint> from_msg(const goshawk_msgs::msg::AttitudeSetpoint& m);
 void fill_msg(const AttitudeSetpoint& command, goshawk_msgs::msg::AttitudeSetpoint& m);
+
+/// @return wrong_frame, or invalid_input as FallbackStop::check()
+Result<FallbackStop> from_msg(const goshawk_msgs::msg::FallbackStop& m);
+/// Allocates only if the message never held as many states.
+void fill_msg(const FallbackStop& stop, goshawk_msgs::msg::FallbackStop& m);
 
 struct GoalPose {
   Vec3 position_map = Vec3::Zero();

@@ -7,6 +7,7 @@
 
 #include "goshawk/core/brick_map.hpp"
 #include "goshawk/map_server/map_file.hpp"
+#include "goshawk/map_server/map_journal.hpp"
 #include "goshawk/map_server/odds_model.hpp"
 #include "goshawk/map_server/voxel_map.hpp"
 
@@ -39,6 +40,7 @@ struct ScanResult {
   GridUpdate update;                 // brings the grid of before to that of now; may be empty
   std::int64_t points_left_out = 0;  // not finite, or at the sensor itself: missing returns
   std::int64_t points_on_body = 0;
+  std::int64_t points_far = 0;  // farther from the sensor than SensorWatch::kNear_m
 };
 
 /// A window of the world that scans keep up to date (BrickMap), with the confidence of each voxel.
@@ -69,6 +71,18 @@ class LiveMap {
   /// and `result` is used again.
   /// @return invalid_input, map_too_large; then nothing was inserted
   Status insert_scan(const Scan& scan, ScanResult& result);
+
+  /// What another map knows takes the place of what was known there, as sure as a file. Bricks
+  /// outside of a window that follows are kept beside it. The version rises by one.
+  /// @return invalid_input for voxels of another size, or a map that the window does not meet;
+  /// map_too_large; then nothing has changed
+  Status insert_map(const RawVoxels& map, GridUpdate& update);
+
+  /// All that is known: the window and what is kept beside it, on whole bricks.
+  /// @return map_too_large beyond max_voxels
+  Result<RawVoxels> world(std::int64_t max_voxels) const;
+  /// What is kept beside the window, as a journal has it.
+  std::vector<JournalBrick> bricks_outside() const;
 
   std::int64_t memory_bytes() const;
   /// Bricks that left the window and are kept, and those that were forgotten for want of memory.

@@ -30,6 +30,7 @@ struct Config {
   bool fly_unknown = false;
   double map_wait_s = 0.5;
   double map_retry_s = 5.0;
+  double operator_speed_m_s = 0.5;  // of landings and takeoffs
   std::string memory_file;
 
   Limits limits() const {
@@ -126,6 +127,10 @@ void describe(Self& c, Visitor&& visit) {
   visit("odometry_timeout_s", c.odometry_timeout_s, "s", "odometry older than this is not used",
         Range::positive(60.0));
   detail::describe_map(c, visit);
+  visit("operator_speed_m_s", c.operator_speed_m_s, "m/s",
+        "speed limit of the landings and takeoffs that an operator commands, if lower than "
+        "v_max_m_s",
+        AtRunTime{Range::positive(100.0)});
   visit("memory_file", c.memory_file, "",
         "file that keeps the goal and what is flown, so that a restarted navigator goes on with "
         "them; a launch sets it; empty: none",

@@ -18,12 +18,13 @@
 
 namespace goshawk::navigator {
 
-enum class State { idle, planning, flying, arrived, failed };
+enum class State { idle, planning, flying, arrived, failed, held };
 std::string_view to_string(State state);
 
 struct Goal {
   Vec3 position_map = Vec3::Zero();
   double yaw_rad = 0.0;
+  double v_max_m_s = 0.0;  // on the way there, if lower than the parameter; 0: the parameter
 };
 
 /// What the navigator tells everyone.
@@ -47,6 +48,13 @@ struct Complaint {
 };
 /// What the navigator wants sent; the component turns it into messages.
 using Order = std::variant<PlanRequest, Commit, StateOrder, Complaint>;
+
+/// How far down the vehicle may go.
+struct Descent {
+  enum class Below { obstacle, unknown, map_floor };
+  Vec3 end_map = Vec3::Zero();
+  Below below = Below::obstacle;  // why not farther
+};
 
 /// What a navigator needs of the one that ran before it.
 struct Memory {
@@ -89,7 +97,26 @@ class Navigator {
   Memory memory() const;
 
   /// @param yaw_rad heading at the goal, map x to y @return invalid_input if not finite
-  Status on_goal(const Vec3& goal_map, double yaw_rad, std::int64_t now_ns);
+  Status on_goal(const Vec3& goal_map, double yaw_rad, std::int64_t now_ns) {
+    return on_goal(Goal{goal_map, yaw_rad}, now_ns);
+  }
+  /// @return invalid_input if not finite, or the speed limit is below 0
+  Status on_goal(const Goal& goal, std::int64_t now_ns);
+  // What an operator commands (operator.cpp).
+  /// Gives the goal up and brakes on what is flown, as gently as its limits allow. If no way to
+  /// brake is found, it is tried again; what is flown ends at rest in any case. Without a goal
+  /// nothing changes.
+  void hold(std::int64_t now_ns);
+  /// Pursues the held goal again. @return invalid_input if nothing is held
+  Status resume_held(std::int64_t now_ns);
+  /// Brakes, and makes the lowest place below a goal that the map shows free all the way down.
+  /// @return the place; tracking_lost: no odometry; no_map; start_occupied, start_unknown or
+  ///   start_outside: the map does not show the vehicle's own place free
+  Result<Descent> land(std::int64_t now_ns);
+  /// Makes a place straight above a goal.
+  /// @return the place; invalid_input: not a height above 0; tracking_lost: no odometry
+  Result<Vec3> take_off(double height_m, std::int64_t now_ns);
+
   void on_odometry(const RigidBodyState& vehicle, std::int64_t now_ns);
   /// What is flown is checked against it at once. @pre grid->check() ok
   void on_map(std::shared_ptr<const VoxelGrid> grid, std::int64_t now_ns);
@@ -148,10 +175,12 @@ class Navigator {
     double lead_s = 0.0;
     std::int64_t not_before_ns = 0;  // the next start
     std::int64_t retry_ns = 0;
-    std::int64_t wait_begin_ns = 0;  // since when a plan waits for the vehicle to come to rest
+    std::int64_t wait_begin_ns = 0;    // since when a plan waits for the vehicle to come to rest
+    std::int64_t settle_begin_ns = 0;  // since when there is a tracker that lets it
     std::optional<std::int64_t> revoked_ns = {};  // since when another goal is flown to
     std::optional<MapRetry> map_retry = {};       // it failed because of the map
   };
+  static constexpr double kTracking_s = 0.5;  // what the tracker said is believed for so long
   struct Tracked {
     std::uint64_t id;
     std::int64_t ns;
@@ -168,11 +197,19 @@ class Navigator {
     std::optional<std::int64_t> time_ns = {};  // none: at rest, whenever
   };
 
+  // operator.cpp
+  void hold_on(std::int64_t now_ns);
+  Vec3 rest_place(std::int64_t now_ns) const;
+  Descent lowest_below(const Vec3& from_map, Index3 lowest) const;
   // planning.cpp
   void plan(std::int64_t now_ns);
+  bool tracker_is_silent(std::int64_t now_ns) const;
+  bool waits_for_tracker(std::int64_t now_ns);
+  Error why_it_does_not_rest(std::int64_t now_ns) const;
   Start start_in_flight(std::int64_t now_ns) const;
   Start start_at(std::int64_t time_ns) const;
   Start start_at_rest(std::int64_t now_ns) const;
+  Limits limits_from(const Start& start) const;
   void ask(const Start& start, std::int64_t now_ns);
   void open(const Start& start, std::uint64_t id, std::int64_t now_ns);
   void drop_open();
@@ -210,6 +247,7 @@ class Navigator {
   // navigator.cpp
   void check_arrival(std::int64_t now_ns);
   bool at_rest() const;
+  bool has_given_up() const { return state_ == State::failed || state_ == State::held; }
   const VoxelGrid* map() const { return space_.grid(); }
   bool odometry_is_fresh(std::int64_t now_ns) const;
   std::uint64_t flown_id(std::int64_t now_ns) const;
@@ -226,8 +264,9 @@ class Navigator {
   std::uint64_t dropped_id_ = 0;  // a request that nobody needs an answer to any more
   Schedule schedule_;
   FreeSpace space_;
-  std::int64_t improve_ns_ = 0;  // then the next improvement is asked for
-  double latency_s_ = 0.0;       // from request to answer, of late
+  std::int64_t brake_again_ns_ = 0;  // of a hold
+  std::int64_t improve_ns_ = 0;      // then the next improvement is asked for
+  double latency_s_ = 0.0;           // from request to answer, of late
   std::optional<std::int64_t> map_changed_ns_;
   std::optional<Tracked> tracked_;
   std::optional<Left> left_;

@@ -16,6 +16,7 @@ struct Config {
   AttitudeGains attitude;
   double command_timeout_s = 0.1;
   double failsafe_tilt_rad = 0.87;
+  double fallback_tolerance_m = 0.1;
   double failsafe_hold_s = 10.0;
   LandingRule landing = LandingRule::map;
   double land_speed_m_s = 0.3;
@@ -71,6 +72,10 @@ void describe(Self& c, Visitor&& visit) {
   visit("command_timeout_s", c.command_timeout_s, "s",
         "without a command for this long, the failsafe brakes and holds the position",
         Range{0.01, 10.0});
+  visit("fallback_tolerance_m", c.fallback_tolerance_m, "m",
+        "the failsafe flies the tracker's fallback stop if that passes the vehicle this near, else "
+        "it brakes straight ahead; 0: always straight ahead",
+        Range{0.0, 10.0});
   visit("failsafe_tilt_rad", c.failsafe_tilt_rad, "rad", "steepest tilt while the failsafe brakes",
         Range{0.05, 1.2});
   visit("failsafe_hold_s", c.failsafe_hold_s, "s",

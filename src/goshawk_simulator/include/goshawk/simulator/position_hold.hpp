@@ -29,10 +29,7 @@ class PositionHold {
   const Vec3& position_map() const { return position_map_; }
 
  private:
-  AttitudeSetpoint thrust_along(const Vec3& acceleration_map) const;
-
-  double mass_kg_;
-  double max_thrust_n_;
+  plant::VehicleParameters parameters_;
   double max_tilt_rad_;
   bool braking_ = false;
   Vec3 position_map_ = Vec3::Zero();

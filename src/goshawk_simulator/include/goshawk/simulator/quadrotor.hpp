@@ -4,6 +4,7 @@
 
 #include "goshawk/core/landing.hpp"
 #include "goshawk/simulator/config.hpp"
+#include "goshawk/simulator/fallback_pilot.hpp"
 #include "goshawk/simulator/mixer.hpp"
 #include "goshawk/simulator/plant.hpp"
 #include "goshawk/simulator/position_hold.hpp"
@@ -51,6 +52,13 @@ class Quadrotor {
   /// unit length (1e-3), or a body rate is above 100 rad/s
   Status command(const AttitudeSetpoint& command);
 
+  /// What to fly if commands stop coming. @return as FallbackPilot::offer()
+  Status set_fallback(FallbackStop stop) {
+    return fallback_.offer(std::move(stop), state(), time_ns_);
+  }
+  /// Commands are lost, and it is on the fallback stop.
+  bool flies_fallback() const { return flies_fallback_; }
+
   /// The map that a landing checks; needed when needs_map(). If a newer one shows the way down
   /// blocked, a landing stops and the vehicle hovers. @pre grid->check() ok
   void set_map(std::shared_ptr<const VoxelGrid> grid);
@@ -85,6 +93,7 @@ class Quadrotor {
   AttitudeSetpoint onboard_target();
   void learn_disturbance(const Vec3& last_velocity_map);
   void watch_commands();
+  void lose_commands();
   void try_to_land();
 
   Config config_;
@@ -94,6 +103,8 @@ class Quadrotor {
   Wind wind_;
   Sensor sensor_;
   PositionHold hold_;
+  FallbackPilot fallback_;
+  bool flies_fallback_ = false;
   LandingGuard guard_;
   Vec3 disturbance_map_ = Vec3::Zero();  // [m/s^2] from the inertial sensors, smoothed
   Error not_landing_{ErrorCode::ok, ""};

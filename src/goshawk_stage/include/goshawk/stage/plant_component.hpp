@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "goshawk/conversions/vehicle.hpp"
+#include "goshawk/plant/world_time.hpp"
 #include "goshawk/runtime/component.hpp"
 #include "goshawk/runtime/lock_step.hpp"
 #include "goshawk/stage/map_subscription.hpp"
@@ -16,9 +17,9 @@
 
 namespace goshawk::stage {
 
-/// The component of a simulated plant: command -> odom, vehicle_status, /tf, in real time (by the
-/// monotonic clock; stamps are the wall clock's) or as the clock of nodes in lock step. With sensor
-/// noise or delay, `odom_true` has the truth.
+/// The component of a simulated plant: command, fallback_stop -> odom, vehicle_status, /tf, in real
+/// time (by the monotonic clock; stamps are the wall clock's) or as the clock of nodes in lock
+/// step. With sensor noise or delay, `odom_true` has the truth.
 ///
 /// @tparam Vehicle flies: simulator::Quadrotor's functions. A parameter of the template, so that
 ///         this package knows no plant
@@ -39,6 +40,12 @@ class PlantComponent : public runtime::Component {
         "command", runtime::Qos::best_effort(),
         [this](const goshawk_msgs::msg::AttitudeSetpoint& m, const runtime::MessageInfo&) {
           on_command(m);
+        },
+        runtime::Writers::one("command"));
+    node.subscribe<goshawk_msgs::msg::FallbackStop>(
+        "fallback_stop", runtime::Qos::best_effort(),
+        [this](const goshawk_msgs::msg::FallbackStop& m, const runtime::MessageInfo&) {
+          on_fallback(m);
         },
         runtime::Writers::one("command"));
     const double period_s = 1.0 / config_.plant.rate_hz;
@@ -79,13 +86,19 @@ class PlantComponent : public runtime::Component {
     command_ns_ = node_.monotonic_ns();
   }
 
+  void on_fallback(const goshawk_msgs::msg::FallbackStop& m) {
+    auto stop = conversions::from_msg(m);
+    const Status status = stop ? vehicle_.set_fallback(*std::move(stop)) : stop.error();
+    if (!status) reporter_.complain(status.error());
+  }
+
   void step() {
     const std::int64_t now_ns = node_.monotonic_ns();
     // In a turn that another node leads, the plant has no time before its first step.
     if (last_ns_ == 0) last_ns_ = now_ns - std::llround(1e9 / config_.plant.rate_hz);
-    // After a pause (a stopped process, a suspended machine) the world goes on, it does not jump.
-    const double dt_s = std::clamp(double(now_ns - last_ns_) * 1e-9, 0.0, 0.1);
+    const double gap_s = double(now_ns - last_ns_) * 1e-9;
     last_ns_ = now_ns;
+    const double dt_s = plant::world_time_s(gap_s, 1.0 / config_.plant.rate_hz);
     if (auto status = vehicle_.advance(dt_s); !status)
       throw std::logic_error(status.error().message);
     const auto measured = vehicle_.measure();
@@ -127,8 +140,10 @@ class PlantComponent : public runtime::Component {
       reporter_.fault(fail(ErrorCode::tracking_lost, "still no commands: landing at " + place));
     } else if (control == Control::failsafe && said_ == Control::commanded) {
       reporter_.fault(fail(ErrorCode::tracking_lost,
-                           fmt::format("commands stopped coming: braking and holding; landing "
+                           fmt::format("commands stopped coming: braking {}, then holding; landing "
                                        "after {} s if the way down is free",
+                                       vehicle_.flies_fallback() ? "on the tracker's fallback stop"
+                                                                 : "straight ahead",
                                        config_.vehicle.failsafe_hold_s)));
     }
     said_ = control;

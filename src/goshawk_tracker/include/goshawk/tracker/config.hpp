@@ -59,6 +59,7 @@ struct Config {
   double odometry_timeout_s = 0.1;
   double brake_acceleration_m_s2 = 2.0;
   double stop_acceleration_m_s2 = 5.0;
+  double fallback_after_s = 0.15;
   double navigator_timeout_s = 2.0;
   LandingRule landing = LandingRule::map;
   double land_after_s = 10.0;
@@ -156,6 +157,10 @@ void describe_safety(Self& c, Visitor& visit) {
         "hardest deceleration of a vehicle that is stopped where it is; at least "
         "brake_acceleration_m_s2",
         Range{0.1, 20.0});
+  visit("fallback_after_s", c.fallback_after_s, "s",
+        "the fallback stop that the vehicle gets in advance brakes this long after it was made: "
+        "the vehicle's own command_timeout_s, and 0.05 s between two of them",
+        Range{0.0, 10.0});
   visit("navigator_timeout_s", c.navigator_timeout_s, "s",
         "a navigator that was heard once and then is silent for this long is lost",
         AtRunTime{Range{0.1, 3600.0}});

@@ -37,6 +37,9 @@ class Reference {
   /// At rest for good: a held point, or the end of the trajectory, the curve or the braking.
   bool at_rest(std::int64_t time_ns) const;
 
+  /// [s] until it is at rest for good; 0: it is.
+  double seconds_to_rest(std::int64_t from_ns) const;
+
   /// Is what is left of it free, until it comes to rest, or until to_ns? A held point is.
   /// @return the first obstruction; its time counts from from_ns on
   std::optional<Obstruction> find_obstruction(const FreeSpace& space, std::int64_t from_ns,

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "goshawk/core/fallback_stop.hpp"
 #include "goshawk/core/landing.hpp"
 #include "goshawk/tracker/map_guard.hpp"
 #include "goshawk/tracker/position_controller.hpp"
@@ -56,6 +57,7 @@ struct TrackingStatus {
 ///     Status answer = tracker->accept(committed, now_ns);            // whenever one comes
 ///     tracker->heard_navigator(now_ns);                              // at each sign of its life
 ///     tracker->watch(now_ns);                                        // regularly, odometry or not
+///     if (tracker->make_fallback(stop, now_ns)) publish(stop);       // 20 times a second
 class Tracker {
  public:
   /// @return invalid_parameter with every fault of the configuration
@@ -81,9 +83,12 @@ class Tracker {
 
   /// @param stamp_ns [ns] when `state` was true @param now_ns [ns]
   /// @return the command; or invalid_input (not finite, no unit quaternion, farther or faster
-  ///         than any vehicle, older than the last, from the future), tracking_lost (older than odometry_timeout_s). A stamp that falls
-  ///         back by more than odometry_timeout_s is a simulation that began anew: everything is
-  ///         forgotten, and the vehicle holds where it is.
+  ///         than any vehicle, older than the last, from the future), tracking_lost (older than
+  ///         odometry_timeout_s). A stamp that falls back by more than odometry_timeout_s is a
+  ///         simulation that began anew: everything is forgotten, and the vehicle holds where it
+  ///         is. A vehicle that is faster than 0.4 m/s when it is first heard flies what another
+  ///         tracker gave it: it is left alone (tracking_lost) until it is slower, but for 5 s at
+  ///         the most.
   Result<AttitudeSetpoint> step(const RigidBodyState& state, std::int64_t stamp_ns,
                                 std::int64_t now_ns);
   Result<AttitudeSetpoint> step(const RigidBodyState& state, std::int64_t now_ns) {
@@ -119,6 +124,12 @@ class Tracker {
   /// until a map does. Each is a fault with a code. Included in step().
   void watch(std::int64_t now_ns);
 
+  /// What the vehicle is to fly if this tracker falls silent: what is flown now, braked along its
+  /// path fallback_after_s from now. For the vehicle, in advance: twenty times a second, and
+  /// whenever what is flown has changed. Allocates only if `stop` never held as many states.
+  /// @return false, and `stop` as it was: where the vehicle is, is not known
+  bool make_fallback(FallbackStop& stop, std::int64_t now_ns) const;
+
   /// As of the last step() or watch().
   TrackingStatus status() const;
 
@@ -126,8 +137,10 @@ class Tracker {
   explicit Tracker(const Config& config);
   Status check_odometry(const RigidBodyState& state, std::int64_t stamp_ns,
                         std::int64_t now_ns) const;
+  Status check_rest(const RigidBodyState& state, std::int64_t stamp_ns, std::int64_t now_ns);
   Status check_start(const Reference& candidate, std::int64_t now_ns) const;
-  FlatState reference_at(std::int64_t time_ns) const;
+  const Reference& flown_at(std::int64_t time_ns) const;
+  FlatState reference_at(std::int64_t time_ns) const { return flown_at(time_ns).at(time_ns); }
   void hold_here(const RigidBodyState& state);
   void take_in(const RigidBodyState& state, std::int64_t stamp_ns, std::int64_t now_ns);
   void switch_trajectories(std::int64_t now_ns);
@@ -168,10 +181,11 @@ class Tracker {
   std::int64_t stamp_ns_ = 0;
   double since_last_s_ = 0.0;  // between the last two states
   std::int64_t now_ns_ = 0;
-  std::int64_t called_ns_ = 0;               // the last step() or watch()
-  bool whereabouts_lost_ = false;            // until the next odometry
-  std::optional<std::int64_t> jumped_ns_;    // when odometry last jumped
-  std::optional<std::int64_t> disputed_ns_;  // when it last jumped to and fro
+  std::int64_t called_ns_ = 0;                  // the last step() or watch()
+  bool whereabouts_lost_ = false;               // until the next odometry
+  std::optional<std::int64_t> moves_since_ns_;  // first odometry, of a vehicle that does not rest
+  std::optional<std::int64_t> jumped_ns_;       // when odometry last jumped
+  std::optional<std::int64_t> disputed_ns_;     // when it last jumped to and fro
   double first_yaw_rad_ = 0.0;
   double yaw_rad_ = 0.0;
 

@@ -1,9 +1,9 @@
-#include "goshawk/tracker/flatness.hpp"
+#include "goshawk/core/flatness.hpp"
 
 #include <cmath>
 #include <numbers>
 
-namespace goshawk::tracker {
+namespace goshawk {
 
 AttitudeSetpoint thrust_attitude_of(const Vec3& specific_force_map,
                                     const Vec3& specific_force_rate_map, double yaw_rad,
@@ -33,4 +33,4 @@ double wrapped(double angle_rad) {
   return std::remainder(angle_rad, 2.0 * std::numbers::pi);
 }
 
-}  // namespace goshawk::tracker
+}  // namespace goshawk

@@ -1,4 +1,4 @@
-#include "goshawk/tracker/flatness.hpp"
+#include "goshawk/core/flatness.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@
 
 #include "goshawk/core/random.hpp"
 
-namespace goshawk::tracker {
+namespace goshawk {
 namespace {
 
-Vec3 random_vector(Random& random, double size) {
+Vec3 drawn_vector(Random& random, double size) {
   return {random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size)};
 }
 
@@ -26,9 +26,9 @@ TEST(Flatness, HoverNeedsTheWeightAsThrustAndNoTilt) {
 TEST(Flatness, ThrustAlongTheAttitudeGivesBackTheForceAndTheHeading) {
   Random random(5);
   for (int i = 0; i < 1000; ++i) {
-    const Vec3 force = random_vector(random, 6.0) + Vec3(0, 0, kGravity_m_s2);
+    const Vec3 force = drawn_vector(random, 6.0) + Vec3(0, 0, kGravity_m_s2);
     const double yaw = random.uniform(-3.1, 3.1);
-    const auto out = thrust_attitude_of(force, random_vector(random, 5.0), yaw, 0.0, 2.0);
+    const auto out = thrust_attitude_of(force, drawn_vector(random, 5.0), yaw, 0.0, 2.0);
     EXPECT_LT((out.thrust_n / 2.0 * (out.q_map_base * Vec3::UnitZ()) - force).norm(), 1e-9);
     EXPECT_NEAR(wrapped(yaw_of(out.q_map_base) - yaw), 0.0, 1e-9);
     EXPECT_NEAR(out.q_map_base.norm(), 1.0, 1e-14);
@@ -39,8 +39,8 @@ TEST(Flatness, ThrustAlongTheAttitudeGivesBackTheForceAndTheHeading) {
 TEST(Flatness, BodyRatesAreTheDerivativeOfTheAttitude) {
   Random random(6);
   for (int i = 0; i < 1000; ++i) {
-    const Vec3 force = random_vector(random, 6.0) + Vec3(0, 0, kGravity_m_s2);
-    const Vec3 rate = random_vector(random, 10.0);
+    const Vec3 force = drawn_vector(random, 6.0) + Vec3(0, 0, kGravity_m_s2);
+    const Vec3 rate = drawn_vector(random, 10.0);
     const double yaw = random.uniform(-3.1, 3.1), yaw_rate = random.uniform(-2.0, 2.0);
     const double h = 1e-5;
     const auto at = [&](double t) {
@@ -58,4 +58,4 @@ TEST(Flatness, AnglesAreWrappedToHalfATurn) {
 }
 
 }  // namespace
-}  // namespace goshawk::tracker
+}  // namespace goshawk

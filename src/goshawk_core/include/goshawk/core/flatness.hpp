@@ -2,7 +2,7 @@
 
 #include "goshawk/core/vehicle.hpp"
 
-namespace goshawk::tracker {
+namespace goshawk {
 
 /// Differential flatness of the quadrotor (thesis, Problem Formulation; Mellinger and Kumar 2011):
 /// the body's z axis lies along the specific force that the trajectory asks of the rotors, and
@@ -20,4 +20,4 @@ AttitudeSetpoint thrust_attitude_of(const Vec3& specific_force_map,
 /// @return the same angle in [-pi, pi]
 double wrapped(double angle_rad);
 
-}  // namespace goshawk::tracker
+}  // namespace goshawk
