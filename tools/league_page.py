@@ -32,7 +32,7 @@ COLUMNS = [("world", "world", ""), ("tracking", "tracking", ""), ("runs", "runs"
            ("time_s", "time, s", ".2f"), ("first_time_s", "seed 0, s", ".2f"),
            ("floor_s", "floor, s", ".2f"), ("length_m", "length, m", ".1f"),
            ("mean_speed_m_s", "mean, m/s", ".2f"), ("top_speed_m_s", "top, m/s", ".2f"),
-           ("of_known_speed", "of known", ".2f"), ("stops", "stops", "d"),
+           ("of_known_speed", "of known", ".2f"),
            ("jerk_m_s2", "jerk, m/s&sup2;", ".0f"), ("max_error_m", "error, m", ".3f"),
            ("replan_p50_ms", "replan p50, ms", ".1f"), ("replan_p99_ms", "p99, ms", ".1f"),
            ("peer", "peer", ""), ("peer_time_s", "peer, s", ".2f")]

@@ -19,7 +19,7 @@ namespace goshawk::bench {
 namespace {
 
 constexpr double kResolution_m = 0.2, kInflation_m = 0.2;
-constexpr double kHorizon_m = 8.0, kSpacing_m = 0.4, kSpeed_m_s = 1.2;
+constexpr double kHorizon_m = 8.0, kSpacing_m = 0.4, kSpeed_m_s = 0.7;
 constexpr std::int64_t kSecond = 1'000'000'000;
 
 std::shared_ptr<const VoxelGrid> forest(std::uint64_t seed) {
@@ -125,6 +125,7 @@ class Bench {
   void replan(const std::vector<Vec3>& points, Random& random, Measured& measured) {
     Measured first;
     send(spline(points, kSpeed_m_s), first);
+    now_ += kSecond;
     for (int i = 0; i < 8; ++i) {
       now_ += kSecond / 5;
       const auto state = guard_.flown().at(now_);

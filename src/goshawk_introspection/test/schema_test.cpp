@@ -58,11 +58,13 @@ TEST(Schema, GivesConstantsToTheFieldThatTheyName) {
     EXPECT_EQ(field.constants.empty(), field.name != "state") << field.name;
   }
   const auto constants = state.fields[1].constants;
-  ASSERT_EQ(constants.size(), 5u);
+  ASSERT_EQ(constants.size(), 6u);
   EXPECT_EQ(constants[3].name, "STATE_ARRIVED");
   EXPECT_EQ(constants[3].value, 3u);
-  EXPECT_THAT(ros_msg_definition(state),
-              HasSubstr("uint8 STATE_ARRIVED=3\nuint8 STATE_FAILED=4\nuint8 state  # "));
+  EXPECT_THAT(
+      ros_msg_definition(state),
+      HasSubstr(
+          "uint8 STATE_ARRIVED=3\nuint8 STATE_FAILED=4\nuint8 STATE_HELD=5\nuint8 state  # "));
 }
 
 TEST(Schema, CommentsEveryFieldWithUnitOrMeaning) {

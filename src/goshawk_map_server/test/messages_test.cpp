@@ -6,6 +6,7 @@
 
 #include "goshawk/map_server_messages/cloud.hpp"
 #include "goshawk/map_server_messages/depth_image.hpp"
+#include "goshawk/map_server_messages/octomap.hpp"
 
 namespace goshawk::map_server {
 namespace {
@@ -231,6 +232,31 @@ TEST(DepthImages, NeedACalibratedCameraWithoutDistortion) {
   const auto distorted = read_camera_info(m);
   ASSERT_FALSE(distorted);
   EXPECT_THAT(distorted.error().message, HasSubstr("rectified"));
+}
+
+TEST(OctoMaps, ComeBackFromTheirMessageAsTheyWere) {
+  const GridGeometry geometry{Vec3(-0.4, 0.2, 0.0), 0.2, {7, 5, 3}};
+  RawVoxels map{geometry, BitGrid(geometry.size, true), BitGrid(geometry.size, false)};
+  for (const Index3 v : {Index3{0, 0, 0}, Index3{6, 4, 2}, Index3{3, 2, 1}}) {
+    map.known.set(v, true);
+    map.occupied.set(v, v.x != 3);
+  }
+  octomap_msgs::msg::Octomap m;
+  ASSERT_TRUE(fill_octomap(map.geometry, map.occupied, map.known, m));
+  const auto read = read_octomap(m);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_LT((read->geometry.origin_map - geometry.origin_map).norm(), 1e-9);
+  EXPECT_EQ(read->known, map.known);
+  EXPECT_EQ(read->occupied, map.occupied);
+
+  m.id("ColorOcTree");
+  EXPECT_EQ(read_octomap(m).code(), ErrorCode::invalid_input);
+  m.id("OcTree");
+  m.binary(false);
+  EXPECT_EQ(read_octomap(m).code(), ErrorCode::invalid_input);
+  m.binary(true);
+  m.data().pop_back();
+  EXPECT_FALSE(read_octomap(m));
 }
 
 }  // namespace

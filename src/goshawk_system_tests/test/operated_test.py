@@ -59,7 +59,7 @@ class OperatedFlight(StackTest):
     def test_2_a_hold_stops_the_vehicle_and_resume_flies_on(self):
         # Slow, so that there is time for a hold on a busy machine.
         here, since = self.stack.place(), len(self.missions.lines())
-        verb = self.send("{},{},{},0.6,".format(*HOME))
+        verb = self.send("{},{},{},0.5,".format(*HOME))
         self.assertTrue(until(lambda: math.dist(self.stack.place(), here) > 0.3, 60.0))
         self.call("hold")
         self.assertTrue(until(lambda: ("paused", 1) in self.missions_said(since), 15.0),
