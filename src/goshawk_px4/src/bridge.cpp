@@ -108,7 +108,7 @@ std::optional<TimedState> Bridge::hear(const VehicleOdometry& m, std::int64_t no
   const auto state = estimate_.hear(m);
   if (!state) {
     unsure_ = state.error().message;
-    say_once(state.error());
+    say_seldom(state.error(), now_ns);
     return {};
   }
   unsure_.clear();
@@ -140,7 +140,7 @@ void Bridge::hear(const AttitudeSetpoint& command, std::int64_t now_ns) {
 void Bridge::hear(FallbackStop stop, std::int64_t now_ns) {
   if (phase_ != Phase::flying || !has_state(now_ns)) return;
   if (const Status status = track_.offer(std::move(stop), *state_, now_ns); !status) {
-    say_once(status.error());
+    say_seldom(status.error(), now_ns);
   }
 }
 
@@ -176,6 +176,14 @@ std::string Bridge::reasons() const {
 
 void Bridge::say(ErrorCode code, const std::string& sentence) {
   link_.tell(fail(code, sentence));
+}
+
+// Of what comes at a hundred times a second, with other numbers each time.
+void Bridge::say_seldom(const Error& fault, std::int64_t now_ns) {
+  constexpr std::int64_t kSeldom_ns = 1'000'000'000;
+  if (seldom_ns_ && now_ns - *seldom_ns_ < kSeldom_ns) return;
+  if (fault.message != said_) seldom_ns_ = now_ns;
+  say_once(fault);
 }
 
 // What is the case for many messages is said when it begins.

@@ -124,7 +124,7 @@ void Bridge::step_waiting(std::int64_t now_ns) {
   const Status fit = can_fly(now_ns);
   if (!fit) {
     alive_since_ns_.reset();
-    if (now_ns - *first_step_ns_ > kNobody_ns) say_once(fit.error());
+    if (now_ns - *first_step_ns_ > kNobody_ns) say_seldom(fit.error(), now_ns);
     return;
   }
   send_alive(now_ns);
@@ -143,7 +143,7 @@ void Bridge::step_waiting(std::int64_t now_ns) {
 void Bridge::step_starting(std::int64_t now_ns) {
   if (const Status fit = can_fly(now_ns); !fit) {
     phase_ = Phase::waiting;
-    return say_once(fit.error());
+    return say_seldom(fit.error(), now_ns);
   }
   send_alive(now_ns);
   const bool offboard = config_.mode == ModeKind::offboard;

@@ -202,6 +202,19 @@ TEST_F(Bridges, ResetsThatWereMissedEndGoshawksFlights) {
   EXPECT_FALSE(given);
 }
 
+TEST_F(Bridges, AnUncertaintyThatVariesIsSaidOnceASecondAtTheMost) {
+  make();
+  fly();
+  const auto before = link.told.size();
+  for (int i = 0; i < 200; ++i) {  // 4 s
+    odometry.position_variance[0] = 0.1f + 0.01f * float(i);
+    run(0.02);
+  }
+  EXPECT_TRUE(link.told_of("max_position_deviation_m"));
+  EXPECT_LE(link.told.size() - before, 5u);
+  EXPECT_FALSE(given);
+}
+
 TEST_F(Bridges, ACriticalBatteryDoesNotStart) {
   make(Takeoff::automatic);
   bridge->hear(BatteryStatus{true, 0.05f, BatteryStatus::kCritical});

@@ -105,6 +105,7 @@ class Bridge {
   void ask(std::uint32_t command, float param1, std::int64_t now_ns, std::int64_t period_ns);
   void say(ErrorCode code, const std::string& sentence);
   void say_once(const Error& fault);
+  void say_seldom(const Error& fault, std::int64_t now_ns);
 
   Config config_;
   Link& link_;
@@ -136,6 +137,7 @@ class Bridge {
   std::int64_t asked_ns_ = 0;                   // the last command to PX4
   int asks_ = 0;
   std::string said_;
+  std::optional<std::int64_t> seldom_ns_;  // when say_seldom() last said something
   std::string unsure_;  // why the newest odometry was not used; empty: it was
 };
 
