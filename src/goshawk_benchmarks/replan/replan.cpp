@@ -14,6 +14,7 @@
 #include "goshawk/path_search/path_search.hpp"
 #include "goshawk/trajectory_optimizer/trajectory_optimizer.hpp"
 #include "goshawk/worlds/world.hpp"
+#include "replan/scan_to_commit.hpp"
 
 namespace goshawk::bench {
 namespace {
@@ -162,7 +163,31 @@ double share_ms(const std::vector<Planner::Times>& all, double share,
   return at_share(sorted, share) * 1e-3;
 }
 
-void run(Report& report) {
+// Over DDS: live flights in the default made world.
+void fly_live_flights(Report& report) {
+  for (const auto& [arrangement, launch] :
+       {std::pair{"processes", "live"}, std::pair{"container", "live_container"}}) {
+    ScanToCommit all;
+    for (int flight = 0; flight < (report.options().quick ? 1 : 5); ++flight) {
+      report.progress(fmt::format("live flight {} over DDS, {}", flight + 1, arrangement));
+      const ScanToCommit one = fly_live(launch);
+      all.latency_ms.insert(all.latency_ms.end(), one.latency_ms.begin(), one.latency_ms.end());
+      all.scans += one.scans;
+      all.commits += one.commits;
+    }
+    std::ranges::sort(all.latency_ms);
+    report.add({{"table", "scan to commit"},
+                {"world", "default"},
+                {"arrangement", arrangement},
+                {"scans", all.scans},
+                {"commits", all.commits},
+                {"answered", all.latency_ms.size()},
+                {"scan_to_commit_p50_ms", at_share(all.latency_ms, 0.5)},
+                {"scan_to_commit_p99_ms", at_share(all.latency_ms, 0.99)}});
+  }
+}
+
+void run_forests(Report& report) {
   const bool quick = report.options().quick;
   for (const double density : {0.05, 0.1, 0.2}) {
     report.progress(fmt::format("forest, {:g} of it blocked", density));
@@ -188,6 +213,11 @@ void run(Report& report) {
          {"optimizer_p50_ms", share_ms(all, 0.5, [](const Times& t) { return t.optimizer_us; })},
          {"stop_p50_ms", share_ms(all, 0.5, [](const Times& t) { return t.stop_us; })}});
   }
+}
+
+void run(Report& report) {
+  run_forests(report);
+  fly_live_flights(report);
 }
 
 }  // namespace

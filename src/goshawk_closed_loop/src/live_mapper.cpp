@@ -23,9 +23,10 @@ Result<LiveMapper> LiveMapper::create(const Config& config,
   }
   auto sensor = sensors::Sensor::create(config.sensor);
   if (!sensor) return sensor.error();
-  auto live =
-      LiveMap::unknown_space(config.box, config.resolution_m,
-                             {.unknown = UnknownPolicy::free, .inflation_m = config.inflation_m});
+  auto live = LiveMap::unknown_space(config.box, config.resolution_m,
+                                     {.unknown = UnknownPolicy::free,
+                                      .inflation_m = config.inflation_m,
+                                      .reserve_m = config.reserve_m});
   if (!live) return live.error();
   return LiveMapper(config, std::move(world), *std::move(sensor), *std::move(live));
 }

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "ball_proof.hpp"
+
 namespace goshawk {
 namespace {
 
@@ -18,6 +20,7 @@ constexpr int kDeepest = 48;
 constexpr int kMostParts = 100'000;
 // [voxels] beyond this no grid reaches, and numbers do not tell voxels apart.
 constexpr double kFarthest = 1e12;
+constexpr double kNoMotion = 1e-6;  // [m/s], [m/s^2]
 // Boxes that cover more rows are halved before their voxels are looked at.
 constexpr int kManyRows = 64;
 
@@ -76,7 +79,9 @@ void halve(const Points& curve, Points& left, Points& right) {
 
 class Prover {
  public:
-  Prover(const FreeSpace::View& space, double touch) : space_(space), touch_(touch) {}
+  /// @param rest [voxels] where the curve begins at rest
+  Prover(const FreeSpace::View& space, double touch, const std::optional<Vec3>& rest)
+      : space_(space), touch_(touch), ball_(space, touch, rest) {}
 
   /// @param curve [voxels] @param begin, end of it in the piece's own time, 0 to 1
   /// @return whether it is free; else obstruction() has the first place
@@ -97,7 +102,14 @@ class Prover {
         }
       }
     }
-    if (!last_chance && !is_inside_one(ways)) return prove_halves(curve, begin, end, depth);
+    bool hopeless = is_inside_one(ways);
+    if (space_.asks_for_raw) {  // the voxels are coarse: it may be free all the same
+      if (ball_.holds(curve)) return true;
+      const auto near = ball_.too_near(curve.col(0));
+      hopeless = near.has_value();
+      voxel = near ? near : ball_.too_near(curve.col(5)).value_or(*voxel);
+    }
+    if (!last_chance && !hopeless) return prove_halves(curve, begin, end, depth);
     obstruction_ = Obstruction{begin, *voxel};
     return false;
   }
@@ -125,12 +137,14 @@ class Prover {
 
   FreeSpace::View space_;
   double touch_;
+  BallProof ball_;
   int parts_ = 0;
   Obstruction obstruction_;
 };
 
 std::optional<Obstruction> obstruction_of_part(const FreeSpace::View& space,
-                                               const BezierPiece& piece, double begin, double end) {
+                                               const BezierPiece& piece, double begin, double end,
+                                               const std::optional<Vec3>& rest = {}) {
   const auto& g = space.grid->geometry;
   Points curve = (piece.control_points.colwise() - g.origin_map) / g.resolution_m;
   // NaN as well: neither is anywhere in a grid.
@@ -154,7 +168,7 @@ std::optional<Obstruction> obstruction_of_part(const FreeSpace::View& space,
     }
     curve = kept;
   }
-  Prover prover(space, kTouch_m / g.resolution_m);
+  Prover prover(space, kTouch_m / g.resolution_m, rest);
   if (prover.prove(curve, begin, end)) return {};
   Obstruction found = prover.obstruction();
   found.time_s *= piece.duration_s;
@@ -168,15 +182,24 @@ std::optional<Obstruction> obstruction_of(const FreeSpace::View& space, const Be
   return obstruction_of_part(space, curve, begin, end);
 }
 
+// [voxels] where the trajectory begins, if it begins at rest.
+std::optional<Vec3> rest_of(const FreeSpace::View& space, const Trajectory& trajectory) {
+  const FlatState start = trajectory.sample(0.0);
+  if (start.velocity.norm() > kNoMotion || start.acceleration.norm() > kNoMotion) return {};
+  return space.grid->geometry.to_grid(start.position);
+}
+
 std::optional<Obstruction> obstruction_of(const FreeSpace::View& space,
                                           const Trajectory& trajectory, double from_s,
                                           double to_s) {
+  std::optional<Vec3> rest;
+  if (space.asks_for_raw) rest = rest_of(space, trajectory);
   double begin_s = 0.0;
   for (const auto& piece : trajectory.pieces) {
     const double from = std::max(0.0, (from_s - begin_s) / piece.duration_s);
     const double to = std::min(1.0, (to_s - begin_s) / piece.duration_s);
     if (from < 1.0 && from <= to) {
-      if (auto found = obstruction_of_part(space, piece, from, to)) {
+      if (auto found = obstruction_of_part(space, piece, from, to, rest)) {
         found->time_s += begin_s;
         return found;
       }
@@ -199,12 +222,12 @@ Status check_in(const FreeSpace::View& space, const CommittedTrajectory& committ
 
 std::optional<Obstruction> find_obstruction(const VoxelGrid& grid, const BezierPiece& curve,
                                             double from_s, double to_s) {
-  return obstruction_of({&grid, {}}, curve, from_s, to_s);
+  return obstruction_of({.grid = &grid}, curve, from_s, to_s);
 }
 
 std::optional<Obstruction> find_obstruction(const VoxelGrid& grid, const Trajectory& trajectory,
                                             double from_s, double to_s) {
-  return obstruction_of({&grid, {}}, trajectory, from_s, to_s);
+  return obstruction_of({.grid = &grid}, trajectory, from_s, to_s);
 }
 
 std::optional<Obstruction> find_obstruction(const FreeSpace& space, const BezierPiece& curve,
@@ -222,7 +245,9 @@ std::string to_text(const VoxelGrid& grid, const Obstruction& found) {
   if (!grid.grown.contains(found.voxel)) {
     return fmt::format("map {} has its edge at {} m", grid.version, place);
   }
-  if (!grid.grown.get(found.voxel)) {
+  const bool unseen_cube = !grid.unknown_is_occupied && !grid.raw.empty() &&
+                           !grid.raw.get(found.voxel) && !grid.is_known(found.voxel);
+  if (!grid.grown.get(found.voxel) || unseen_cube) {
     return fmt::format("map {} has space that was never seen within {:.3g} m of {} m", grid.version,
                        grid.inflation_m, place);
   }
@@ -232,7 +257,7 @@ std::string to_text(const VoxelGrid& grid, const Obstruction& found) {
 }
 
 Status check_against(const VoxelGrid& grid, const CommittedTrajectory& committed, double from_s) {
-  return check_in({&grid, {}}, committed, from_s);
+  return check_in({.grid = &grid}, committed, from_s);
 }
 
 Status check_against(const FreeSpace& space, const CommittedTrajectory& committed, double from_s) {

@@ -22,13 +22,37 @@ std::optional<int> first_with(const RowWord* row, int x0, int x1, bool value) {
   return {};
 }
 
+// The first voxel of the row that the body cannot be in, as one of its rows says.
+// @param value of the bits that keep it out
+std::optional<int> first_kept_out(const FreeSpace::View& space, const BitGrid& bits, bool value,
+                                  int x0, int x1, int y, int z) {
+  const Index3 size = space.grid->geometry.size;
+  std::optional<int> first;
+  for (const FreeSpace::Row& row : space.body) {
+    const int at_y = y + row.dy, at_z = z + row.dz;
+    if (at_y < 0 || at_z < 0 || at_y >= size.y || at_z >= size.z) continue;
+    const int from = std::max(0, x0 - row.half_extent);
+    const int to = std::min(size.x - 1, x1 + row.half_extent);
+    const auto found = first_with(bits.row(at_y, at_z), from, to, value);
+    if (!found) continue;
+    const int x = std::max(x0, *found - row.half_extent);
+    if (!first || x < *first) first = x;
+  }
+  return first;
+}
+
 }  // namespace
 
 void FreeSpace::set_map(std::shared_ptr<const VoxelGrid> grid) {
   grid_ = std::move(grid);
-  asks_for_known_ =
-      grid_ != nullptr && !fly_unknown_ && !grid_->unknown_is_occupied && !grid_->known.empty();
-  if (!asks_for_known_) return;
+  const bool lax = grid_ != nullptr && !grid_->unknown_is_occupied;
+  asks_for_known_ = lax && !fly_unknown_ && !grid_->known.empty();
+  asks_for_raw_ = lax && !grid_->raw.empty();
+  if (!asks_for_known_ && !asks_for_raw_) {
+    body_.clear();
+    body_voxels_ = -1.0;
+    return;
+  }
   const double voxels = grid_->inflation_m / grid_->geometry.resolution_m;
   const Index3 size = grid_->geometry.size;
   if (voxels == body_voxels_ && size == body_size_) return;
@@ -47,18 +71,11 @@ bool FreeSpace::is_free(Index3 voxel) const {
 
 std::optional<Index3> first_blocked(const FreeSpace::View& space, int x0, int x1, int y, int z) {
   const VoxelGrid& grid = *space.grid;
-  if (const auto x = first_with(grid.grown.row(y, z), x0, x1, true)) return Index3{*x, y, z};
-  const Index3 size = grid.geometry.size;
-  std::optional<int> first;
-  for (const FreeSpace::Row& row : space.body) {
-    const int at_y = y + row.dy, at_z = z + row.dz;
-    if (at_y < 0 || at_z < 0 || at_y >= size.y || at_z >= size.z) continue;
-    const int from = std::max(0, x0 - row.half_extent);
-    const int to = std::min(size.x - 1, x1 + row.half_extent);
-    const auto unseen = first_with(grid.known.row(at_y, at_z), from, to, false);
-    if (!unseen) continue;
-    const int x = std::max(x0, *unseen - row.half_extent);
-    if (!first || x < *first) first = x;
+  auto first = first_with(grid.grown.row(y, z), x0, x1, true);
+  // What is raw within the inflation is grown: the rest of the row has nothing near.
+  if (first && space.asks_for_raw) first = first_kept_out(space, grid.raw, true, *first, x1, y, z);
+  if (!first && space.asks_for_known) {
+    first = first_kept_out(space, grid.known, false, x0, x1, y, z);
   }
   if (!first) return {};
   return Index3{*first, y, z};

@@ -10,6 +10,7 @@
 namespace goshawk {
 namespace {
 
+constexpr double kFarthestReserve = 4.0;  // [inflations] within which a cause is looked for
 constexpr int kMostReach = 50;  // [voxels] around a point in which the cause is looked for
 
 /// The nearest voxel that keeps a point's voxel blocked, of one kind.
@@ -26,11 +27,11 @@ double squared_gap(Index3 d) {
   return gap(d.x) * gap(d.x) + gap(d.y) * gap(d.y) + gap(d.z) * gap(d.z);
 }
 
-// The nearest voxel that is_cause(voxel) within the inflation; of equally near ones the one whose
+// The nearest voxel that is_cause(voxel) within the radius; of equally near ones the one whose
 // centre is nearest. Nothing outside the grid grows into it.
 template <typename IsCause>
-Cause nearest(const VoxelGrid& grid, Index3 at, const IsCause& is_cause) {
-  const double radius = grid.inflation_m / grid.geometry.resolution_m;
+Cause nearest(const VoxelGrid& grid, Index3 at, double radius_m, const IsCause& is_cause) {
+  const double radius = radius_m / grid.geometry.resolution_m;
   const int reach = int(std::min(std::ceil(radius) + 1.0, double(kMostReach)));
   Cause cause;
   int best_steps = std::numeric_limits<int>::max();
@@ -72,9 +73,8 @@ std::string unknown_nearby(const VoxelGrid& grid) {
 std::string why_blocked(const VoxelGrid& grid, Index3 at) {
   const bool raw = !grid.raw.empty();
   if (raw && grid.raw.get(at)) return "lies in an obstacle: choose a free point";
-  const Cause obstacle =
-      raw ? nearest(grid, at, [&](Index3 i) { return grid.raw.get(i) && grid.is_known(i); })
-          : Cause{};
+  const auto is_obstacle = [&](Index3 i) { return grid.raw.get(i) && grid.is_known(i); };
+  const Cause obstacle = raw ? nearest(grid, at, grid.inflation_m, is_obstacle) : Cause{};
   if (obstacle.found()) {
     return fmt::format(
         "is closer than {:.3g} m to the obstacle at {}, {}: choose a point with more clearance, or "
@@ -82,9 +82,19 @@ std::string why_blocked(const VoxelGrid& grid, Index3 at) {
         grid.inflation_m, to_text(grid.geometry.center(obstacle.voxel)),
         direction(at, obstacle.voxel));
   }
-  const bool unknown = grid.unknown_is_occupied && grid.unknown_grows &&
-                       nearest(grid, at, [&](Index3 i) { return !grid.is_known(i); }).found();
+  const bool unknown =
+      grid.unknown_is_occupied && grid.unknown_grows &&
+      nearest(grid, at, grid.inflation_m, [&](Index3 i) { return !grid.is_known(i); }).found();
   if (unknown && raw) return unknown_nearby(grid);
+  if (raw && !grid.unknown_is_occupied) {
+    const Cause in_reserve = nearest(grid, at, kFarthestReserve * grid.inflation_m, is_obstacle);
+    if (in_reserve.found()) {
+      return fmt::format(
+          "is nearer to the obstacle at {} than plans may come, {:.3g} m and the reserve: choose a "
+          "point with more clearance, or a smaller reserve_m of the map server",
+          to_text(grid.geometry.center(in_reserve.voxel)), grid.inflation_m);
+    }
+  }
   if (unknown) return unknown_nearby(grid) + "; or it is as close to an obstacle";
   return fmt::format(
       "lies in an obstacle, or closer than {:.3g} m to one: choose a point with more "

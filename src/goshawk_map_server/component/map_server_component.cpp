@@ -60,7 +60,9 @@ class MapServerComponent : public Component {
         beginning_(begin(config_, node)),
         map_(std::move(beginning_.map)),
         reporter_(node, StageRole::map_server, "bricks"),
-        output_(node, reporter_, beginning_.versions_before, config_.publish_raw),
+        // With a reserve, what is flown is judged by raw voxels (goshawk::FreeSpace).
+        output_(node, reporter_, beginning_.versions_before,
+                config_.publish_raw || config_.reserve_m > 0.0),
         odometry_("odometry", kPosesKept_s, config_.pose_max_gap_s),
         frames_(kPosesKept_s, config_.pose_max_gap_s),
         watch_(config_.sensor_timeout_s) {

@@ -31,7 +31,7 @@ VoxelizeOptions voxelize_options(const Config& config) {
 }
 
 Growth growth(const Config& config) {
-  return {config.unknown, config.radius_m + config.margin_m};
+  return {config.unknown, config.radius_m + config.margin_m, config.reserve_m};
 }
 
 Result<LiveOptions> live_options(const Config& config) {

@@ -50,8 +50,8 @@ Result<LiveWindow> LiveWindow::make(const GridGeometry& geometry, const Growth& 
                                     const LiveOptions& options) {
   const Index3 size = options.follows ? whole_bricks(geometry.size) : geometry.size;
   auto map = BrickMap::make(
-      size, {growth.inflation_m, geometry.resolution_m, growth.unknown != UnknownPolicy::free,
-             growth.unknown == UnknownPolicy::occupied});
+      size, {growth.inflation_m + growth.reserve_m, geometry.resolution_m,
+             growth.unknown != UnknownPolicy::free, growth.unknown == UnknownPolicy::occupied});
   if (!map) return map.error();
   return LiveWindow(*std::move(map), geometry, options);
 }

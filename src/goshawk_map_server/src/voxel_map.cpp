@@ -100,8 +100,7 @@ void fill(RawVoxels& raw, Index3 at, int side, bool occupied) {
 }
 
 // Row by row: what grows under the policy. Padding bits of the result are undefined.
-BitGrid::Word growing_word(BitGrid::Word occupied, BitGrid::Word known,
-                                  UnknownPolicy policy) {
+BitGrid::Word growing_word(BitGrid::Word occupied, BitGrid::Word known, UnknownPolicy policy) {
   return policy == UnknownPolicy::occupied ? occupied | ~known : occupied;
 }
 
@@ -127,7 +126,7 @@ Result<VoxelGrid> grow(const RawVoxels& raw, const Growth& growth, std::uint64_t
   // Padding known = false makes ~known true there, which is the padding of `grown`.
   BitGrid growing = raw.occupied;
   if (growth.unknown == UnknownPolicy::occupied) combine(growing, growing_word);
-  auto grown = inflate(growing, growth.inflation_m, raw.geometry.resolution_m);
+  auto grown = inflate(growing, growth.inflation_m + growth.reserve_m, raw.geometry.resolution_m);
   if (!grown) return grown.error();
   if (growth.unknown == UnknownPolicy::blocked) combine(*grown, finished_word);
   return VoxelGrid{.geometry = raw.geometry,
@@ -163,7 +162,7 @@ Error nothing_free(const Growth& growth) {
               fmt::format("no voxel of the map is free after obstacles were inflated by {:.3g} m "
                           "with unknown space {}: use a smaller radius or margin, or treat "
                           "unknown space as free",
-                          growth.inflation_m, to_word(growth.unknown)));
+                          growth.inflation_m + growth.reserve_m, to_word(growth.unknown)));
 }
 
 Result<VoxelGrid> make_voxel_grid(const RawVoxels& raw, const Growth& growth,

@@ -32,12 +32,16 @@ TEST(Config, DefaultsAreValidAndEveryParameterIsDescribed) {
   Checker checker;
   describe(config, checker);
   EXPECT_TRUE(checker.all_valid);
-  EXPECT_EQ(checker.names.size(), 38U);
+  EXPECT_EQ(checker.names.size(), 39U);
 }
 
 TEST(Config, InflationIsRadiusPlusMarginAndTheBoxIsOnlyUsedOnDemand) {
   Config config;
   EXPECT_DOUBLE_EQ(growth(config).inflation_m, 0.2);
+  EXPECT_DOUBLE_EQ(growth(config).reserve_m, 0.0);
+  config.reserve_m = 0.1;
+  EXPECT_DOUBLE_EQ(growth(config).inflation_m, 0.2);
+  EXPECT_DOUBLE_EQ(growth(config).reserve_m, 0.1);
   EXPECT_FALSE(voxelize_options(config).box);
   config.use_box = true;
   config.box_z_min_m = -1.0;

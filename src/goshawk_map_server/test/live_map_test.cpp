@@ -31,8 +31,8 @@ void expect_same(const VoxelGrid& a, const VoxelGrid& b) {
 // Is the grid what one would get by growing the whole window anew?
 void expect_rebuilt(const LiveMap& map) {
   const VoxelGrid grid = map.grid();
-  const auto anew = make_voxel_grid({grid.geometry, grid.raw, grid.known}, map.growth(),
-                                    grid.version);
+  const auto anew =
+      make_voxel_grid({grid.geometry, grid.raw, grid.known}, map.growth(), grid.version);
   if (anew) return expect_same(grid, *anew);
   EXPECT_EQ(anew.code(), ErrorCode::map_empty);
   EXPECT_EQ(grid.grown.count(), grid.grown.voxels());
@@ -41,7 +41,8 @@ void expect_rebuilt(const LiveMap& map) {
 TEST(LiveMap, UpdatesGiveWhatAFullRebuildGives) {
   Random random(31);
   for (int round = 0; round < 24; ++round) {
-    const Growth growth{UnknownPolicy(round % 3), random.uniform(0.0, round % 2 == 0 ? 0.25 : 0.9)};
+    const Growth growth{UnknownPolicy(round % 3), random.uniform(0.0, round % 2 == 0 ? 0.25 : 0.9),
+                        round % 4 == 0 ? 0.2 : 0.0};
     const Box box{Vec3(-7.4, -2.0, -1.0), Vec3(8.0, 2.2, 1.4)};
     LiveMap map = LiveMap::unknown_space(box, 0.2, growth).value();
     VoxelGrid subscriber = map.grid();

@@ -27,7 +27,8 @@ RawVoxels random_raw(Random& random) {
   return raw;
 }
 
-// By the words of the definition (docs/method.md): the distance between two cubes is less than the radius.
+// By the words of the definition (docs/method.md): the distance between two cubes is less than the
+// radius.
 bool near_by_definition(const RawVoxels& raw, Index3 a, Index3 b, double radius_m) {
   const double res = raw.geometry.resolution_m;
   const auto gap_m = [&](int i, int j) { return std::max(0, std::abs(i - j) - 1) * res; };
@@ -41,7 +42,8 @@ bool blocked_by_definition(const RawVoxels& raw, const Growth& growth, Index3 at
   const bool unknown_here = !raw.known.get(at);
   if (unknown_here && growth.unknown != UnknownPolicy::free) return true;
   if (raw.occupied.get(at)) return true;
-  const int reach = int(growth.inflation_m / raw.geometry.resolution_m) + 2;
+  const double radius_m = growth.inflation_m + growth.reserve_m;
+  const int reach = int(radius_m / raw.geometry.resolution_m) + 2;
   for (int z = at.z - reach; z <= at.z + reach; ++z) {
     for (int y = at.y - reach; y <= at.y + reach; ++y) {
       for (int x = at.x - reach; x <= at.x + reach; ++x) {
@@ -49,7 +51,7 @@ bool blocked_by_definition(const RawVoxels& raw, const Growth& growth, Index3 at
         if (!raw.occupied.contains(other)) continue;
         const bool grows = raw.occupied.get(other) ||
                            (growth.unknown == UnknownPolicy::occupied && !raw.known.get(other));
-        if (grows && near_by_definition(raw, at, other, growth.inflation_m)) return true;
+        if (grows && near_by_definition(raw, at, other, radius_m)) return true;
       }
     }
   }
@@ -80,7 +82,8 @@ TEST(MakeVoxelGrid, BlocksWhatTheDefinitionBlocksUnderEachPolicy) {
     const RawVoxels raw = random_raw(random);
     // Whole multiples of the resolution are where rounding would show.
     const double inflation_m = round % 2 == 0 ? 0.1 * random.below(4) : random.uniform(0.0, 0.35);
-    const Growth growth{UnknownPolicy(random.below(3)), inflation_m};
+    const double reserve_m = round % 3 == 0 ? 0.1 * random.below(3) : 0.0;
+    const Growth growth{UnknownPolicy(random.below(3)), inflation_m, reserve_m};
     const auto grid = make_voxel_grid(raw, growth, 7);
     if (!grid) {
       EXPECT_EQ(grid.code(), ErrorCode::map_empty);

@@ -49,7 +49,9 @@ void Navigator::take_answer(Commitment candidate, std::uint64_t number, std::int
   if (wait_for_map(candidate, number, now_ns)) return;
   candidate.start_time_ns = request.start_time_ns.value_or(now_ns + to_ns(config_.commit_lead_s));
   candidate.yaw_rad = pursuit_.goal.yaw_rad;
-  if (auto status = add_stop(candidate, !open_->from_motion()); !status) {
+  const bool rests = !open_->from_motion();
+  if (auto status = add_stop(candidate, rests); !status) {
+    if (rests && look_along(candidate.nominal.trajectory(), now_ns)) return;
     return act_on(status.error(), now_ns);
   }
   auto committed = CommittedTrajectory::make(std::move(candidate));

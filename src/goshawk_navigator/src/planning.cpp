@@ -16,6 +16,9 @@ namespace {
 // A plan that begins in flight must come this long before, so that the tracker has it.
 constexpr double kSwitchSlack_s = 0.02;
 
+// Of the time at which a plan may begin.
+constexpr double kSearchStep_s = 0.02;
+
 // No way to rest was found on what is flown: again after this time.
 constexpr double kBrakeAgain_s = 0.1;
 // A stage may have planned in a map that is older than the newest by so much.
@@ -48,7 +51,10 @@ void Navigator::plan(std::int64_t now_ns) {
   if (schedule_.moves(now_ns) && odometry_ns_) return ask(start_in_flight(now_ns), now_ns);
   // Odometry that was only just discovered, a trajectory that is just ending, a vehicle that brakes
   // by itself: all of these pass.
-  if (odometry_is_fresh(now_ns) && at_rest()) return ask(start_at_rest(now_ns), now_ns);
+  if (odometry_is_fresh(now_ns) && at_rest()) {
+    if (!leave_blocked_place(now_ns)) return ask(start_at_rest(now_ns), now_ns);
+    return ask(start_in_flight(now_ns), now_ns);
+  }
   if (odometry_is_fresh(now_ns) && waits_for_tracker(now_ns)) return;
   const std::int64_t begin_ns = std::max(pursuit_.wait_begin_ns, pursuit_.settle_begin_ns);
   if (now_ns - begin_ns < to_ns(config_.settle_timeout_s)) return;
@@ -85,8 +91,23 @@ bool Navigator::waits_for_tracker(std::int64_t now_ns) {
 }
 
 Navigator::Start Navigator::start_in_flight(std::int64_t now_ns) const {
-  return start_at(std::max({now_ns + to_ns(pursuit_.lead_s), pursuit_.not_before_ns,
-                            schedule_.legs().front().start_ns()}));
+  return start_at(
+      free_for_planning_from(std::max({now_ns + to_ns(pursuit_.lead_s), pursuit_.not_before_ns,
+                                       schedule_.legs().front().start_ns()})));
+}
+
+// What is flown may lead through voxels that the map learnt late: free for flying, but no plan may
+// begin there. @return the first moment from then on at which one may; if there is none, that one
+std::int64_t Navigator::free_for_planning_from(std::int64_t time_ns) const {
+  if (!space_.asks_for_known() || map()->raw.empty()) return time_ns;
+  const auto is_free = [this](std::int64_t at_ns) {
+    const auto voxel = map()->geometry.index_of(schedule_.at(at_ns)->at(at_ns).position);
+    return voxel && !map()->grown.get(*voxel);
+  };
+  for (std::int64_t at_ns = time_ns; at_ns < schedule_.end_ns(); at_ns += to_ns(kSearchStep_s)) {
+    if (is_free(at_ns)) return at_ns;
+  }
+  return is_free(schedule_.end_ns()) ? std::max(time_ns, schedule_.end_ns()) : time_ns;
 }
 
 // On what will be flown then. @pre not before the first leg

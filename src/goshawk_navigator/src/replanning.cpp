@@ -102,8 +102,8 @@ void Navigator::improve(std::int64_t now_ns) {
     drop_open();
   }
   improve_ns_ = now_ns + to_ns(kAskAgain_s);
-  const std::int64_t begin_ns =
-      std::max(now_ns + to_ns(improvement_lead_s()), schedule_.legs().front().start_ns());
+  const std::int64_t begin_ns = free_for_planning_from(
+      std::max(now_ns + to_ns(improvement_lead_s()), schedule_.legs().front().start_ns()));
   if (begin_ns >= schedule_.end_ns()) return;  // it will be planned for from rest
   open(start_at(begin_ns), next_id_++, now_ns);
   open_->improves = true;

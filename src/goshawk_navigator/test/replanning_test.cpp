@@ -250,6 +250,31 @@ TEST(Replanning, FromRestNothingBeginsThatLeadsAtOnceIntoUnseenSpaceUntilAMapSho
   EXPECT_EQ(h.commits.size(), 1u);
 }
 
+TEST(Replanning, FromRestTheVehicleLooksWhereTheWayLeadsIntoUnseenSpaceAndThenPlansAgain) {
+  Harness h;
+  h.yaw_rad = 2.0;
+  h.pass(0.1);
+  h.map(seen_below(1, 6));
+  h.map_version = 6;
+  h.goal(kFar);
+  h.answer(12.0);
+  ASSERT_EQ(h.commits.size(), 1u) << "a turn";
+  const CommittedTrajectory turn = h.commits[0];
+  EXPECT_NEAR(turn.yaw_at(0.0), 0.0, 1e-9);
+  EXPECT_LT((turn.flown().sample(turn.flown().duration_s()).position - kHome).norm(), 1e-9);
+  EXPECT_EQ(h.last().state, State::flying);
+  EXPECT_EQ(h.plans.size(), 1u);
+  h.tracker_says(turn.id(), ok());
+  h.yaw_rad = 0.0;
+  h.map(seen_below(9, 7));
+  h.map_version = 7;
+  h.pass(turn.flown().duration_s() + 0.2);
+  ASSERT_EQ(h.plans.size(), 2u);
+  h.answer(12.0);
+  ASSERT_EQ(h.commits.size(), 2u);
+  EXPECT_GT(rest_x(h.commits[1]), 5.0);
+}
+
 TEST(Replanning, WhatIsForgottenIsNotFlownInto) {
   Harness h = approaching(9);
   h.pass(3.0);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <stdexcept>
+#include <string>
 
 #include "count_of.hpp"
 #include "goshawk/closed_loop/flight_lab.hpp"
@@ -37,12 +39,20 @@ worlds::World made(const char* kind, double density, std::uint64_t seed) {
   return worlds::make_world(spec).value();
 }
 
+closed_loop::Setup setup_of(const navigator::Config& config, double move_within_m) {
+  closed_loop::Setup setup;
+  setup.navigator = config;
+  setup.planning.search.move_within_m = move_within_m;
+  setup.home_map = kHome;
+  return setup;
+}
+
 /// A vehicle with a sensor in a world; what it is to fly is checked at every millisecond.
 struct Flight {
   Flight(const worlds::World& made, std::uint64_t seed, const navigator::Config& config,
-         double range_m = 6.0)
+         double range_m = 6.0, double move_within_m = 0.0)
       : world(made, range_m),
-        lab((world.see_from(kHome), world.map()), seed, {.navigator = config, .home_map = kHome}) {
+        lab((world.see_from(kHome), world.map()), seed, setup_of(config, move_within_m)) {
     lab.set_truth(world.truth());
     lab.watch = [this] { look(); };
   }
@@ -96,6 +106,64 @@ TEST(Unfolding, AGoalInUnseenSpaceIsReachedAndNothingUnseenIsFlownThrough) {
   }
   std::printf("%d flights, %.1f s each, fastest %.2f m/s, %d plans, %d commits\n", flights,
               flown_s / flights, fastest_m_s, plans, commits);
+}
+
+/// The middle of an obstacle that nobody has seen yet, 0.3 m from free space at the most.
+Vec3 inside_a_trunk(const VoxelGrid& truth) {
+  const Index3 size = truth.geometry.size;
+  for (int x = size.x - 20; x > size.x / 2; --x) {
+    for (int y = 10; y < size.y - 10; ++y) {
+      const Index3 at{x, y, 7};
+      if (truth.raw.get(at) && !truth.raw.get({x - 1, y, 7})) return truth.geometry.center(at);
+    }
+  }
+  throw std::logic_error("the world has no trunk");
+}
+
+TEST(Unfolding, AGoalThatTurnsOutToLieInAnObstacleIsRefusedWithItsReason) {
+  Flight flight(made("forest", 0.15, 31), 31, optimistic());
+  ASSERT_TRUE(flight.lab.goal(inside_a_trunk(*flight.world.truth())));
+  flight.lab.run(kLongest_s, [&] { return flight.lab.settled(); });
+  EXPECT_EQ(flight.lab.state().state, navigator::State::failed);
+  EXPECT_EQ(flight.lab.state().reason.code, ErrorCode::goal_occupied);
+  EXPECT_LT(flight.lab.speed(), 0.1);
+  expect_safe(flight);
+}
+
+TEST(Unfolding, AGoalThatTurnsOutToLieInAnObstacleIsMovedIfItMayBe) {
+  constexpr double kMove_m = 0.8;
+  Flight flight(made("forest", 0.15, 31), 31, optimistic(), 6.0, kMove_m);
+  const Vec3 goal = inside_a_trunk(*flight.world.truth());
+  ASSERT_TRUE(flight.lab.goal(goal));
+  flight.lab.run(kLongest_s, [&] { return flight.lab.settled(); });
+  EXPECT_EQ(flight.lab.state().state, navigator::State::arrived)
+      << flight.lab.state().reason.message;
+  EXPECT_NE(flight.lab.state().reason.message.find("as the search moved it"), std::string::npos);
+  EXPECT_LT((flight.lab.position() - goal).norm(), kMove_m + 0.1);
+  expect_safe(flight);
+}
+
+/// A hall with a U of walls, 8 m deep, that is open towards the vehicle; the goal lies behind it.
+worlds::World dead_end() {
+  GridGeometry geometry{.resolution_m = 0.2, .size = {100, 50, 15}};
+  worlds::World world{geometry, BitGrid(geometry.size, true, false)};
+  for (int z = 0; z < 15; ++z) {
+    for (int i = 0; i < 40; ++i) {
+      world.occupied.set({40 + i, 15, z}, true);
+      world.occupied.set({40 + i, 35, z}, true);
+    }
+    for (int y = 15; y <= 35; ++y) world.occupied.set({80, y, z}, true);
+  }
+  return world;
+}
+
+TEST(Unfolding, ADeadEndIsLeftByTheMemoryOfTheMap) {
+  Flight flight(dead_end(), 5, optimistic());
+  ASSERT_TRUE(flight.lab.goal(kGoal));
+  flight.lab.run(kLongest_s, [&] { return flight.lab.settled(); });
+  EXPECT_EQ(flight.lab.state().state, navigator::State::arrived)
+      << flight.lab.state().reason.message;
+  expect_safe(flight);
 }
 
 // Whatever of the planning dies, and whether or not scans still come.

@@ -19,11 +19,12 @@ struct FlyOptions {
   double min_distance_m = 2.0;  // between random goals
   std::optional<double> world_density;
   std::uint64_t world_seed = 1;
-  std::string launch = "flight";
-  std::string folder;                         // empty: flights/DATE
-  double timeout_s = 120.0;                   // for each goal
+  bool live = false;         // the vehicle begins without a map; its sensors alone know the world
+  std::string launch;        // empty: flight, or live
+  std::string folder;        // empty: flights/DATE
+  double timeout_s = 120.0;  // for each goal
   std::vector<std::string> stage_parameters;  // node:name:=value
-  bool keep_going = false;  // to the next goal if one is not reached
+  bool keep_going = false;                    // to the next goal if one is not reached
   bool record = true;
 };
 

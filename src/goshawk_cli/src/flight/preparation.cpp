@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <functional>
 
 #include "goshawk/map_server/octree.hpp"
 #include "goshawk/path_search/ends.hpp"
@@ -80,6 +81,32 @@ std::string dated_folder() {
   return folder;
 }
 
+// The sensors see the world; the map server begins with nothing. Its box ends a voxel before the
+// world: rays that leave the world meet its faces, which must not flicker at the map's border.
+void add_live(const Preparation& p, const std::string& folder,
+              const std::function<void(const std::string&, const std::string&)>& set) {
+  set("lidar:world_file", folder + "/world.bt");
+  const GridGeometry& world = p.map.raw.geometry;
+  const Vec3 edge = Vec3::Constant(world.resolution_m);
+  const Vec3 lower = world.origin_map + edge, upper = world.upper_corner_map() - edge;
+  for (int axis = 0; axis < 3; ++axis) {
+    set(fmt::format("map_server:box_{}_min_m", "xyz"[axis]), fmt::format("{:.9g}", lower[axis]));
+    set(fmt::format("map_server:box_{}_max_m", "xyz"[axis]), fmt::format("{:.9g}", upper[axis]));
+  }
+}
+
+void add_known(const Preparation& p, const std::string& folder,
+               const std::function<void(const std::string&, const std::string&)>& set) {
+  set("map_server:map_file", p.config.needs_world()
+                                 ? folder + "/world.bt"
+                                 : std::filesystem::absolute(p.config.map.map_file).string());
+  if (p.config.map.unknown != map_server::UnknownPolicy::free) return;
+  // Asked for, of a map that does not change: what was not measured is flown through.
+  for (const char* node : {"navigator", "tracker"}) {
+    set(fmt::format("{}:fly_unknown", node), "true");
+  }
+}
+
 }  // namespace
 
 Result<Preparation> prepare(const FlyOptions& o) {
@@ -121,7 +148,8 @@ Result<std::string> make_flight_folder(const FlyOptions& o, const Preparation& p
 
 std::vector<std::string> launch_arguments(const FlyOptions& o, const Preparation& p,
                                           const std::string& folder) {
-  std::vector<std::string> a{o.launch, "--log-dir", folder + "/logs", "--ros-args"};
+  const std::string launch = o.launch.empty() ? (o.live ? "live" : "flight") : o.launch;
+  std::vector<std::string> a{launch, "--log-dir", folder + "/logs", "--ros-args"};
   const auto set = [&](const std::string& name, const std::string& value) {
     a.insert(a.end(), {"-p", name + ":=" + value});
   };
@@ -131,15 +159,7 @@ std::vector<std::string> launch_arguments(const FlyOptions& o, const Preparation
   for (const auto& override : o.map.ros_args().overrides) {
     if (override.name != "map_file") set(override.node + ":" + override.name, override.value);
   }
-  set("map_server:map_file", p.config.needs_world()
-                                 ? folder + "/world.bt"
-                                 : std::filesystem::absolute(p.config.map.map_file).string());
-  if (p.config.map.unknown == map_server::UnknownPolicy::free) {
-    // Asked for, of a map that does not change: what was not measured is flown through.
-    for (const char* node : {"navigator", "tracker"}) {
-      set(fmt::format("{}:fly_unknown", node), "true");
-    }
-  }
+  o.live ? add_live(p, folder, set) : add_known(p, folder, set);
   for (int axis = 0; axis < 3; ++axis) {
     set(fmt::format("simulator:start_{}_m", "xyz"[axis]),
         fmt::format("{:.17g}", p.tour.start_map[axis]));

@@ -24,10 +24,8 @@ int run_fly(const FlyOptions& options, const Console& console) {
 }
 
 void add_goals(const Verb& verb, FlyOptions& o) {
-  add_point(verb, "--start", o.start_map,
-            "where the vehicle hovers at first (default 3,0,1)");
-  add_points(verb, "--goal", o.goals_map,
-             "[m] frame map; may repeat, for a tour (default 3,8,2)");
+  add_point(verb, "--start", o.start_map, "where the vehicle hovers at first (default 3,0,1)");
+  add_points(verb, "--goal", o.goals_map, "[m] frame map; may repeat, for a tour (default 3,8,2)");
   verb->add_option("--random", o.random, "fly this many random reachable goals instead")
       ->check(not_negative());
   verb->add_option("--seed", o.seed, "of the random goals")
@@ -49,10 +47,12 @@ void add_fly(Program& program) {
   verb->add_option("--world-seed", o->world_seed, "of the made world")
       ->capture_default_str()
       ->check(not_negative());
+  verb->add_flag("--live", o->live,
+                 "begin without a map: a simulated lidar sees the world, and the vehicle flies by "
+                 "the map that it makes (launch file live)");
   auto* launch = verb->add_option("--launch", o->launch,
-                                  "launch file: flight (a process each), flight_container (one "
-                                  "process), or one of your own")
-                     ->capture_default_str();
+                                  "launch file: flight (a process each; the default), "
+                                  "flight_container (one process), live, or one of your own");
   verb.completes(launch, launch_files);
   verb->add_option("--output", o->folder, "flight folder (default flights/DATE)");
   verb->add_option("--timeout", o->timeout_s, "[s] for each goal")->capture_default_str();
@@ -63,6 +63,7 @@ void add_fly(Program& program) {
       "Examples:\n"
       "  goshawk fly\n"
       "  goshawk fly --map office.bt --start 1,1,1 --goal 8,4,1.5 --goal 1,1,1\n"
+      "  goshawk fly --live\n"
       "  goshawk fly --random 5 --seed 7 --launch flight_container -p simulator:wind_x_m_s:=2\n"
       "goshawk view shows the newest flight, goshawk check judges it again.");
   verb.runs([o](const Console& console) { return run_fly(*o, console); });

@@ -17,6 +17,7 @@ class LiveMapper {
     map_server::Box box = {};    // [m] what the map covers, frame map
     double resolution_m = 0.2;   // edge of a voxel
     double inflation_m = 0.2;    // radius of the body and margin
+    double reserve_m = 0.0;      // that plans keep beyond it (docs/replanning.md)
     double body_radius_m = 0.3;  // voxels nearer than this to where the body was are free
     /// A ray without return has crossed free space up to the sensor's range. True of lidars that
     /// tell a ray that was fired without return from one that was lost.

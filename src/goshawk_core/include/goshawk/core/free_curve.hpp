@@ -29,8 +29,11 @@ std::optional<Obstruction> find_obstruction(const VoxelGrid& grid, const BezierP
                                             double to_s = std::numeric_limits<double>::infinity());
 std::optional<Obstruction> find_obstruction(const VoxelGrid& grid, const Trajectory& trajectory,
                                             double from_s, double to_s);
-/// The same for what the vehicle may fly through, which is not free where it was never seen.
-/// @pre a map has come
+/// The same for what the vehicle may fly through, which is not free where it was never seen. If
+/// raw voxels decide (FreeSpace), the vehicle's ball around the curve is kept out of their cubes,
+/// at all times; what is then reported is the cube. A trajectory that begins at rest may begin
+/// nearer to cubes than the inflation, because the map learnt them late: it comes no nearer to any
+/// of these than it is at rest. @pre a map has come
 std::optional<Obstruction> find_obstruction(const FreeSpace& space, const BezierPiece& curve,
                                             double from_s = 0.0,
                                             double to_s = std::numeric_limits<double>::infinity());

@@ -13,7 +13,12 @@ namespace goshawk {
 /// (for planning), a voxel is free here only if the whole body was seen free there: it is not
 /// grown, and every voxel of the map within the inflation is known. The body may stick out of the
 /// map's faces, which do not grow (docs/adr/0005). If the map counts unknown space as
-/// occupied, its grown bits say all, and if unknown space may be flown through, they alone decide.
+/// occupied, its grown bits say all.
+///
+/// A map may keep a reserve: its grown bits then reach farther than its inflation, so that plans
+/// keep more than what is flown must keep. If such a map brings raw voxels, these decide here, with
+/// the inflation alone: a voxel that becomes an obstacle within the reserve blocks new plans, but
+/// not what is flown.
 ///
 /// The body is looked at only where it is asked for: nothing is grown for the whole map.
 class FreeSpace {
@@ -43,12 +48,12 @@ class FreeSpace {
   /// What decides, for code that looks at rows of voxels.
   struct View {
     const VoxelGrid* grid;
-    std::span<const Row> body;  // empty: grown bits alone decide
+    std::span<const Row> body = {};  // empty: grown bits alone decide
+    bool asks_for_known = false;     // what was not seen is blocked
+    bool asks_for_raw = false;       // raw voxels decide, not the grown ones
   };
   /// @pre a map has come
-  View view() const {
-    return {grid_.get(), asks_for_known_ ? std::span<const Row>(body_) : std::span<const Row>()};
-  }
+  View view() const { return {grid_.get(), body_, asks_for_known_, asks_for_raw_}; }
 
  private:
   bool fly_unknown_;
@@ -57,6 +62,7 @@ class FreeSpace {
   double body_voxels_ = -1.0;  // the inflation that body_ was made for
   Index3 body_size_;
   bool asks_for_known_ = false;
+  bool asks_for_raw_ = false;
 };
 
 /// The first voxel x0 <= x <= x1 of a row that is blocked. @pre the row lies inside the grid

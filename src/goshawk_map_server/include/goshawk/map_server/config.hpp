@@ -19,6 +19,7 @@ struct Config {
   UnknownPolicy unknown = UnknownPolicy::occupied;
   double radius_m = 0.15;
   double margin_m = 0.05;
+  double reserve_m = 0.0;
   double resolution_m = 0.2;
   CloudMeaning cloud_meaning = CloudMeaning::map;
   CloudFrame cloud_frame = CloudFrame::automatic;
@@ -69,6 +70,11 @@ void describe_file(Self& c, Visitor& visit) {
         Anything{});
   visit("radius_m", c.radius_m, "m", "radius of the ball around the vehicle", Range{0.0, 100.0});
   visit("margin_m", c.margin_m, "m", "added to the radius: covers the tracking error",
+        Range{0.0, 100.0});
+  visit("reserve_m", c.reserve_m, "m",
+        "plans keep this much more; with unknown: free, what is flown need not, so that a voxel "
+        "that becomes an obstacle late does not stop the vehicle. About a voxel for a map that a "
+        "sensor makes; sends raw voxels as publish_raw does",
         Range{0.0, 100.0});
   visit("resolution_m", c.resolution_m, "m",
         "voxel edge for clouds, .3dmap files and live scans; OctoMap files bring their own",

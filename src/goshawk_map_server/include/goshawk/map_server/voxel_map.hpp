@@ -43,9 +43,11 @@ constexpr auto words_of(UnknownPolicy) {
 struct Growth {
   UnknownPolicy unknown = UnknownPolicy::occupied;
   double inflation_m = 0.2;  // [m] the vehicle's radius plus its margin
+  double reserve_m = 0.0;    // [m] that plans keep beyond it
 };
 
-/// Applies the policy and inflates the obstacles (goshawk::inflate).
+/// Applies the policy and inflates the obstacles (goshawk::inflate), by the inflation and the
+/// reserve. The grid's inflation_m is without the reserve: what is flown keeps to that.
 /// @return with raw voxels; invalid_input for a bad inflation, map_empty if no voxel stays free
 Result<VoxelGrid> make_voxel_grid(const RawVoxels& raw, const Growth& growth,
                                   std::uint64_t version);

@@ -203,6 +203,7 @@ class Navigator {
   Descent lowest_below(const Vec3& from_map, Index3 lowest) const;
   // planning.cpp
   void plan(std::int64_t now_ns);
+  std::int64_t free_for_planning_from(std::int64_t time_ns) const;
   bool tracker_is_silent(std::int64_t now_ns) const;
   bool waits_for_tracker(std::int64_t now_ns);
   Error why_it_does_not_rest(std::int64_t now_ns) const;
@@ -223,6 +224,11 @@ class Navigator {
   bool brake(std::int64_t now_ns);
   bool brakes() const { return schedule_.last() != nullptr && schedule_.last()->brakes; }
   void check_revoked(std::int64_t now_ns);
+  // from_rest.cpp
+  Commitment from_rest(CertifiedTrajectory way, std::int64_t now_ns);
+  void commit_own(CommittedTrajectory committed);
+  bool leave_blocked_place(std::int64_t now_ns);
+  bool look_along(const Trajectory& way, std::int64_t now_ns);
   // answers.cpp
   void take_answer(Commitment candidate, std::uint64_t number, std::int64_t now_ns);
   void refuse_answer(const Error& why);
