@@ -138,7 +138,7 @@ class Bridge {
   int asks_ = 0;
   std::string said_;
   std::optional<std::int64_t> seldom_ns_;  // when say_seldom() last said something
-  std::string unsure_;  // why the newest odometry was not used; empty: it was
+  std::string unsure_;                     // why the newest odometry was not used; empty: it was
 };
 
 }  // namespace goshawk::px4
