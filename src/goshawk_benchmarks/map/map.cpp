@@ -124,8 +124,8 @@ std::int64_t changed_voxels(const VoxelGrid& a, const VoxelGrid& b) {
     for (int z = rows.z0; z < rows.z1; ++z) {
       for (int y = rows.y0; y < rows.y1; ++y) {
         for (std::size_t w = 0; w < a.raw.words_per_row(); ++w) {
-          changed += std::popcount((a.raw.row(y, z)[w] ^ b.raw.row(y, z)[w]) &
-                                   a.known.row(y, z)[w]);
+          changed +=
+              std::popcount((a.raw.row(y, z)[w] ^ b.raw.row(y, z)[w]) & a.known.row(y, z)[w]);
         }
       }
     }
@@ -141,9 +141,9 @@ struct Case {
 Result<nlohmann::ordered_json> measure(const Case& c, const std::vector<Shot>& shots,
                                        int octomap_shots) {
   const double half_m = 32.0;
-  auto map = LiveMap::unknown_space({Vec3(-half_m, -half_m, -4), Vec3(half_m, half_m, 10)},
-                                    c.resolution_m,
-                                    {map_server::UnknownPolicy::blocked, kInflation_m});
+  auto map =
+      LiveMap::unknown_space({Vec3(-half_m, -half_m, -4), Vec3(half_m, half_m, 10)}, c.resolution_m,
+                             {map_server::UnknownPolicy::blocked, kInflation_m});
   if (!map) return map.error();
   map_server::ScanResult result;
   goshawk_msgs::msg::VoxelGridUpdate message;
@@ -240,7 +240,9 @@ int run(const Call& call) {
       report.add(*std::move(row));
       return success();
     }
-    for (const Case& c : {Case{"lidar", 0.2, 30.0}, {"lidar", 0.2, 10.0}, {"lidar", 0.4, 30.0},
+    for (const Case& c : {Case{"lidar", 0.2, 30.0},
+                          {"lidar", 0.2, 10.0},
+                          {"lidar", 0.4, 30.0},
                           {"lidar", 0.1, 30.0}}) {
       if (quick && c.resolution_m < 0.2) continue;
       if (auto s = add(c, lidar_shots); !s) return s;

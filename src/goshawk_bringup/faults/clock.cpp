@@ -1,7 +1,7 @@
 // The wall clock of the process, stepped: readings, and deadlines on it. Steps come from control(),
-// and $GOSHAWK_LAB_CLOCK_S says how many seconds it is ahead from the start (below zero: behind), as
-// that of another host. The monotonic clocks, which nobody can set, are left alone. A wait that is
-// under way when the clock is stepped keeps its length.
+// and $GOSHAWK_LAB_CLOCK_S says how many seconds it is ahead from the start (below zero: behind),
+// as that of another host. The monotonic clocks, which nobody can set, are left alone. A wait that
+// is under way when the clock is stepped keeps its length.
 
 #include <dlfcn.h>
 #include <pthread.h>

@@ -27,8 +27,9 @@ class ProgramTest : public testing::Test {
 
     const Verb topic = program_.verb("topic", "topics");
     const Verb echo = topic.word("echo", "print");
-    echo.completes(echo->add_option("topic", topic_, "its name")->required(),
-                   [](const Words&) { return Words{"/path", "/odom"}; });
+    echo.completes(echo->add_option("topic", topic_, "its name")->required(), [](const Words&) {
+      return Words{"/path", "/odom"};
+    });
     echo.runs([this](const Console&) { return ran("topic echo"); });
     topic.word("list", "all").runs([this](const Console&) { return ran("topic list"); });
 

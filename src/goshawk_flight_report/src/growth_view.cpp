@@ -14,7 +14,8 @@ namespace goshawk::flight_report {
 namespace {
 
 constexpr std::size_t kMostPanels = 12;
-constexpr double kPanelWidth_px = 400.0, kBetween_px = 76.0, kLegendWidth_px = 210.0, kHead_px = 50.0;
+constexpr double kPanelWidth_px = 400.0, kBetween_px = 76.0, kLegendWidth_px = 210.0,
+                 kHead_px = 50.0;
 constexpr double kHalfHeight_m = 0.5;  // about the heights flown
 
 constexpr Color kUnseen{0.74, 0.74, 0.72};
@@ -168,7 +169,8 @@ Status draw_growth(std::span<const MapMoment> moments, const std::filesystem::pa
   const int panels = int(moments.size());
   const int columns = panels <= 2 ? panels : panels <= 4 ? 2 : 3;
   const int rows = (panels + columns - 1) / columns;
-  const Vec2 size(kPanelWidth_px, std::clamp(kPanelWidth_px * v.length() / u.length(), 120.0, 700.0));
+  const Vec2 size(kPanelWidth_px,
+                  std::clamp(kPanelWidth_px * v.length() / u.length(), 120.0, 700.0));
   Sheet sheet(int(kBetween_px + columns * (size.x() + kBetween_px) + kLegendWidth_px),
               int(rows * (size.y() + kHead_px + kBetween_px)));
   for (int k = 0; k < panels; ++k) {

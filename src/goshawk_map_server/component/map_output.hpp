@@ -24,8 +24,8 @@ class MapOutput {
   /// @param update with the versions that are published
   void publish_update(GridUpdate& update);
 
-  /// The window and what is kept beside it, once for each reader that comes: it may be large. Not in
-  /// lock step.
+  /// The window and what is kept beside it, once for each reader that comes: it may be large. Not
+  /// in lock step.
   void publish_world_if_asked(const LiveMap& map, std::int64_t max_voxels);
 
  private:

@@ -8,19 +8,19 @@
 #include <optional>
 
 #include "beginning.hpp"
-#include "map_output.hpp"
-#include "goshawk/map_server_messages/cloud.hpp"
-#include "goshawk/map_server_messages/depth_image.hpp"
-#include "goshawk/map_server_messages/octomap.hpp"
 #include "goshawk/conversions/vehicle.hpp"
 #include "goshawk/map_server/config.hpp"
 #include "goshawk/map_server/frame_tree.hpp"
 #include "goshawk/map_server/live_map.hpp"
 #include "goshawk/map_server/placement.hpp"
 #include "goshawk/map_server/sensor_watch.hpp"
+#include "goshawk/map_server_messages/cloud.hpp"
+#include "goshawk/map_server_messages/depth_image.hpp"
+#include "goshawk/map_server_messages/octomap.hpp"
 #include "goshawk/runtime/clock.hpp"
 #include "goshawk/runtime/component.hpp"
 #include "goshawk/stage/intake.hpp"
+#include "map_output.hpp"
 #include "octomap_msgs.h"
 #include "tf2_msgs.h"
 
@@ -66,28 +66,7 @@ class MapServerComponent : public Component {
         odometry_("odometry", kPosesKept_s, config_.pose_max_gap_s),
         frames_(kPosesKept_s, config_.pose_max_gap_s),
         watch_(config_.sensor_timeout_s) {
-    node.subscribe<sensor_msgs::msg::PointCloud2>(
-        "cloud_in", Qos::best_effort(2),
-        [this](const sensor_msgs::msg::PointCloud2& m, const MessageInfo&) { on_cloud(m); });
-    node.subscribe<sensor_msgs::msg::CameraInfo>(
-        "depth_info_in", Qos::best_effort(2),
-        [this](const sensor_msgs::msg::CameraInfo& m, const MessageInfo&) { on_camera(m); });
-    node.subscribe<sensor_msgs::msg::Image>(
-        "depth_in", Qos::best_effort(2),
-        [this](const sensor_msgs::msg::Image& m, const MessageInfo&) { on_depth(m); });
-    node.subscribe<octomap_msgs::msg::Octomap>(
-        "octomap_in", Qos::reliable_last(1),
-        [this](const octomap_msgs::msg::Octomap& m, const MessageInfo&) { on_map(m); });
-    node.subscribe<nav_msgs::msg::Odometry>(
-        "odom", Qos::best_effort(50),
-        [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) { on_odometry(m); },
-        Writers::one("odom"));
-    node.subscribe<tf2_msgs::msg::TFMessage>(
-        "/tf_static", Qos::latched(100),
-        [this](const tf2_msgs::msg::TFMessage& m, const MessageInfo&) { on_frames(m, true); });
-    node.subscribe<tf2_msgs::msg::TFMessage>(
-        "/tf", Qos::best_effort(100),
-        [this](const tf2_msgs::msg::TFMessage& m, const MessageInfo&) { on_frames(m, false); });
+    subscribe();
     if (!config_.sensor_frame.empty()) {
       frames_.set_static(std::string(conversions::kBodyFrame), config_.sensor_frame,
                          sensor_mount(config_));
@@ -115,6 +94,31 @@ class MapServerComponent : public Component {
   }
 
  private:
+  void subscribe() {
+    node_.subscribe<sensor_msgs::msg::PointCloud2>(
+        "cloud_in", Qos::best_effort(2),
+        [this](const sensor_msgs::msg::PointCloud2& m, const MessageInfo&) { on_cloud(m); });
+    node_.subscribe<sensor_msgs::msg::CameraInfo>(
+        "depth_info_in", Qos::best_effort(2),
+        [this](const sensor_msgs::msg::CameraInfo& m, const MessageInfo&) { on_camera(m); });
+    node_.subscribe<sensor_msgs::msg::Image>(
+        "depth_in", Qos::best_effort(2),
+        [this](const sensor_msgs::msg::Image& m, const MessageInfo&) { on_depth(m); });
+    node_.subscribe<octomap_msgs::msg::Octomap>(
+        "octomap_in", Qos::reliable_last(1),
+        [this](const octomap_msgs::msg::Octomap& m, const MessageInfo&) { on_map(m); });
+    node_.subscribe<nav_msgs::msg::Odometry>(
+        "odom", Qos::best_effort(50),
+        [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) { on_odometry(m); },
+        Writers::one("odom"));
+    node_.subscribe<tf2_msgs::msg::TFMessage>(
+        "/tf_static", Qos::latched(100),
+        [this](const tf2_msgs::msg::TFMessage& m, const MessageInfo&) { on_frames(m, true); });
+    node_.subscribe<tf2_msgs::msg::TFMessage>(
+        "/tf", Qos::best_effort(100),
+        [this](const tf2_msgs::msg::TFMessage& m, const MessageInfo&) { on_frames(m, false); });
+  }
+
   void publish_whole() {
     changed_ = false;
     output_.publish_whole(map_.grid());

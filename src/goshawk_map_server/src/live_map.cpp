@@ -15,8 +15,9 @@ namespace {
 constexpr double kFarthest_voxels = double(1 << 29);  // voxels are numbered in 32 bits
 
 Status check_scan(const Scan& scan, const GridGeometry& geometry) {
-  const bool counts = scan.origins_map.size() == 1 ||
-                      (!scan.origins_map.empty() && scan.origins_map.size() == scan.points_map.size());
+  const bool counts =
+      scan.origins_map.size() == 1 ||
+      (!scan.origins_map.empty() && scan.origins_map.size() == scan.points_map.size());
   if (!counts || !std::ranges::all_of(scan.origins_map, is_finite) ||
       !(std::isfinite(scan.max_range_m) && scan.max_range_m > 0.0)) {
     return fail(ErrorCode::invalid_input,
@@ -51,19 +52,21 @@ Status check_map(const GridGeometry& map, const GridGeometry& window, bool follo
   const Vec3 lower = map.origin_map, upper = map.upper_corner_map();
   if (std::max(lower.cwiseAbs().maxCoeff(), upper.cwiseAbs().maxCoeff()) >
       kFarthest_voxels * resolution_m) {
-    return fail(ErrorCode::map_too_large,
-                fmt::format("the map reaches more than 2^29 voxels of {:g} m from the origin of the "
-                            "map frame",
-                            resolution_m));
+    return fail(
+        ErrorCode::map_too_large,
+        fmt::format("the map reaches more than 2^29 voxels of {:g} m from the origin of the "
+                    "map frame",
+                    resolution_m));
   }
   const bool meets = (lower.array() < window.upper_corner_map().array()).all() &&
                      (upper.array() > window.origin_map.array()).all();
   if (!meets && !follows) {
-    return fail(ErrorCode::invalid_input,
-                fmt::format("the map, from {} to {} m, lies outside of the map server's box, from {} "
-                            "to {} m: nothing of it is taken",
-                            to_text(lower), to_text(upper), to_text(window.origin_map),
-                            to_text(window.upper_corner_map())));
+    return fail(
+        ErrorCode::invalid_input,
+        fmt::format("the map, from {} to {} m, lies outside of the map server's box, from {} "
+                    "to {} m: nothing of it is taken",
+                    to_text(lower), to_text(upper), to_text(window.origin_map),
+                    to_text(window.upper_corner_map())));
   }
   return success();
 }

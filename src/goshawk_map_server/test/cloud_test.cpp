@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "goshawk/map_server/live_map.hpp"
 #include "cloud_maker.hpp"
+#include "goshawk/map_server/live_map.hpp"
 #include "scan_support.hpp"
 
 namespace goshawk::map_server {
@@ -14,10 +14,10 @@ namespace {
 using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 using testing::is_free;
 using testing::is_occupied;
 using testing::is_unknown;
+using ::testing::IsEmpty;
 using testing::load;
 using testing::pcd;
 
@@ -73,15 +73,15 @@ TEST(Mesh, FacesBeforeTheirVerticesAndInBinaryAreRead) {
 }
 
 TEST(Mesh, EdgesAreObstaclesAndABoxCutsFacesWithoutCornersInIt) {
-  const std::string wire = ply("element vertex 2\n" + kXyz +
-                                   "element edge 1\nproperty int vertex1\nproperty int vertex2\n",
-                               "0 0 0\n4 3 2\n0 1\n");
+  const std::string wire = ply(
+      "element vertex 2\n" + kXyz + "element edge 1\nproperty int vertex1\nproperty int vertex2\n",
+      "0 0 0\n4 3 2\n0 1\n");
   const RawVoxels edge = voxelize(load("m.ply", wire).value()).value();
   for (double t = 0.01; t < 1.0; t += 0.02) EXPECT_TRUE(is_occupied(edge, t * Vec3(4, 3, 2)));
 
-  const std::string wall = ply(
-      "element vertex 3\n" + kXyz + "element face 1\nproperty list uchar int vertex_indices\n",
-      "5 -50 -50\n5 100 -50\n5 -50 100\n3 0 1 2\n");
+  const std::string wall =
+      ply("element vertex 3\n" + kXyz + "element face 1\nproperty list uchar int vertex_indices\n",
+          "5 -50 -50\n5 100 -50\n5 -50 100\n3 0 1 2\n");
   LoadOptions options;
   options.box = Box{Vec3(4, 1, 0), Vec3(6, 3, 2)};
   const RawVoxels cut = voxelize(load("m.ply", wall, options).value()).value();
@@ -99,8 +99,7 @@ TEST(Mesh, WhatCannotBeReadWholeIsRefused) {
       {ply(vertices + lists, kCorners), "promises 1 rows of 'face'"},
       {ply(vertices + "element face 1\nproperty list uchar int corners\n", kCorners + "3 2 3 4\n"),
        "no list vertex_indices"},
-      {ply("element vertex 3\n" + kXyz + lists, "0 0 0\n1 1 nan\n2 2 2\n3 0 1 2\n"),
-       "not finite"}};
+      {ply("element vertex 3\n" + kXyz + lists, "0 0 0\n1 1 nan\n2 2 2\n3 0 1 2\n"), "not finite"}};
   for (const auto& [bytes, why] : cases) {
     const auto source = load("m.ply", bytes);
     ASSERT_FALSE(source) << why;
@@ -131,8 +130,8 @@ TEST(Cloud, OldAndOddFormsOfTextAreRead) {
       {"windows.pcd", windows},
       {"cr.ply", old_ends},
       {"int.pcd", pcd(points, "", "I")},
-      {"int.ply", ply("element vertex 3\nproperty int x\nproperty short y\nproperty uchar z\n",
-                      body)}};
+      {"int.ply",
+       ply("element vertex 3\nproperty int x\nproperty short y\nproperty uchar z\n", body)}};
   for (const auto& [name, bytes] : files) {
     SCOPED_TRACE(name);
     const auto source = load(name, bytes);
@@ -243,8 +242,7 @@ TEST(Cloud, ProjectedCoordinatesNameTheOriginThatBringsThemHome) {
   ASSERT_TRUE(source) << source.error().message;
   EXPECT_TRUE(is_occupied(voxelize(*source).value(), {10, 10, 100}));
 
-  std::string floats =
-      "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 1\nHEIGHT 1\nDATA binary\n";
+  std::string floats = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 1\nHEIGHT 1\nDATA binary\n";
   for (const float v : {691000.4F, 4532000.4F, 100.F}) {
     floats.append(reinterpret_cast<const char*>(&v), sizeof v);
   }

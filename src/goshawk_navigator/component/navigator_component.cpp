@@ -1,8 +1,4 @@
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <array>
-#include <deque>
 
 #include "goshawk/conversions/status.hpp"
 #include "goshawk/conversions/vehicle.hpp"
@@ -11,7 +7,9 @@
 #include "goshawk/stage/intake.hpp"
 #include "goshawk/stage/map_subscription.hpp"
 #include "goshawk/stage/operator_desk.hpp"
+#include "kept_answers.hpp"
 #include "memory_file.hpp"
+#include "operator_answers.hpp"
 
 namespace goshawk::navigator {
 namespace {
@@ -40,54 +38,12 @@ std::uint8_t to_msg(State state) {
 /// What the navigator plans by itself, for those who read who planned.
 constexpr const char* kBrakeName = "navigator_brake";
 
-Result<std::string> sentence(const Status& status, const char* done) {
-  if (!status) return status.error();
-  return std::string(done);
-}
-
-Result<std::string> sentence(const Result<Descent>& descent) {
-  if (!descent) return descent.error();
-  constexpr std::array below{"an obstacle or the ground is below", "below, nothing was ever seen",
-                             "the map ends below"};
-  return fmt::format("descends to {} and rests there with its motors on: {}",
-                     to_text(descent->end_map), below.at(std::size_t(descent->below)));
-}
-
-Result<std::string> sentence(const Result<Vec3>& place_map) {
-  if (!place_map) return place_map.error();
-  return "climbs to " + to_text(*place_map);
-}
-
 double moved_m(const msg::StageReport& m) {
   for (const auto& counter : m.counters()) {
     if (counter.name() == "goal_moved_m") return counter.value();
   }
   return 0.0;
 }
-
-/// Trajectories as they came, until one is committed.
-class Answers {
- public:
-  std::uint64_t keep(const msg::BezierTrajectory& m, std::int64_t wire_ns) {
-    if (kept_.size() == kMost) kept_.pop_front();
-    kept_.push_back({++number_, m, wire_ns});
-    return number_;
-  }
-  struct Kept {
-    std::uint64_t number;
-    msg::BezierTrajectory message;
-    std::int64_t wire_ns;
-  };
-  const Kept* find(std::uint64_t number) const {
-    const auto at = std::ranges::find(kept_, number, &Kept::number);
-    return at == kept_.end() ? nullptr : &*at;
-  }
-
- private:
-  static constexpr std::size_t kMost = 4;
-  std::deque<Kept> kept_;
-  std::uint64_t number_ = 0;
-};
 
 /// The same trajectory, by another clock.
 Result<CommittedTrajectory> begun_at(const CommittedTrajectory& committed, std::int64_t start_ns) {
@@ -401,7 +357,7 @@ class NavigatorComponent : public Component {
   Publisher<msg::CommittedTrajectory> commits_;
   Publisher<msg::NavigatorState> states_;
   Publisher<msg::NavigatorState> alive_;
-  Answers answers_;
+  KeptAnswers answers_;
   std::vector<PublishedLeg> published_;  // of what is flown, by start
   bool resumed_ = false;
   msg::NavigatorState state_message_;

@@ -29,8 +29,8 @@ class MemoryFile : public testing::Test {
   MemoryFile() { std::filesystem::create_directories(folder_); }
   ~MemoryFile() override { std::filesystem::remove_all(folder_); }
 
-  std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) /
-                                  ("goshawk_memory_" + std::to_string(::getpid()));
+  std::filesystem::path folder_ =
+      std::filesystem::path(testing::TempDir()) / ("goshawk_memory_" + std::to_string(::getpid()));
   std::string path_ = folder_ / "navigator.memory";
 };
 

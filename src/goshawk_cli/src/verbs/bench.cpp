@@ -44,8 +44,8 @@ void add_plain(const Verb& bench, const std::string& name, const std::string& su
 }
 
 void add_dds(const Verb& bench) {
-  const Verb verb = bench.word(
-      "dds", "the middleware alone, by transport and size; setpoints beside large maps");
+  const Verb verb =
+      bench.word("dds", "the middleware alone, by transport and size; setpoints beside large maps");
   const auto common = add_common(verb);
   auto part = std::make_shared<std::string>("all");
   verb.choice("--part", *part, "what to measure: all, ways, hand_over, maps",

@@ -112,10 +112,11 @@ void describe_window(Self& c, Visitor& visit) {
         "the box moves with the vehicle in steps of 64 x 8 x 8 voxels; what leaves it is kept and "
         "comes back with it",
         Anything{});
-  visit("max_kept_mb", c.max_kept_mb, "MB",
-        "memory for what left the box; beyond it, what left first is forgotten, and becomes unknown "
-        "space; a report says so",
-        Range{1.0, 1e6});
+  visit(
+      "max_kept_mb", c.max_kept_mb, "MB",
+      "memory for what left the box; beyond it, what left first is forgotten, and becomes unknown "
+      "space; a report says so",
+      Range{1.0, 1e6});
 }
 
 template <typename Self, typename Visitor>

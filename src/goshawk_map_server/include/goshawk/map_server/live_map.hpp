@@ -20,8 +20,9 @@ struct LiveOptions {
   /// The window moves with the vehicle; its size is rounded up to whole bricks. What leaves it is
   /// kept, and comes back with it.
   bool follows = false;
-  std::int64_t max_kept_bytes = 1'000'000'000;  // of what left; then the oldest is forgotten: unknown
-  std::int64_t max_voxels = 1'000'000'000;      // of the window
+  std::int64_t max_kept_bytes =
+      1'000'000'000;                        // of what left; then the oldest is forgotten: unknown
+  std::int64_t max_voxels = 1'000'000'000;  // of the window
 };
 
 /// One scan, frame map [m].
