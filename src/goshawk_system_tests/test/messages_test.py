@@ -183,7 +183,8 @@ class BadMessages(BadMessageCase):
 
 
 class BadOdometry(BadMessageCase):
-    ros_args = fed("tracker:odom", "simulator:command")
+    # The plant takes both from one writer.
+    ros_args = fed("tracker:odom", "simulator:command", "simulator:fallback_stop")
 
     def expect_complaint(self, topic, kind, message, stage, code, word):
         """Said again until it is answered: the reader is best effort, and hears nothing before it has

@@ -19,6 +19,11 @@ class RecordingCase(SystemTest):
         listed["counts"] = {t["name"]: t["messages"] for t in listed["topics"]}
         return listed
 
+    def counts(self, file):
+        """Of the messages by topic; none before the first was written."""
+        outcome = self.sandbox.goshawk("replay", file, "--list", "--json")
+        return self.contents(file)["counts"] if outcome.status == 0 else {}
+
     def messages(self, file, *topics):
         outcome = self.sandbox.goshawk("replay", file, "--print", "--topics", *topics)
         self.assertEqual(outcome.status, 0, str(outcome))

@@ -76,7 +76,7 @@ class ReplayedStages(RecordingCase):
     def wait_recorded(self, file, least):
         """A recorder may be behind, and writes what it has once a second."""
         def written():
-            counts = self.contents(file)["counts"]
+            counts = self.counts(file)
             return all(counts.get(topic, 0) >= count for topic, count in least.items())
         until(written, 20.0, 0.5)
 
