@@ -16,6 +16,8 @@ using closed_loop::Stopwatch;
 
 constexpr double kResolution_m = 0.2;
 constexpr double kInflation_m = closed_loop::kBody_m + closed_loop::kTrackingMargin_m;
+// A voxel that a trunk only grazes is known to be an obstacle late, when it is near.
+constexpr double kReserve_m = kResolution_m;
 constexpr double kLook_s = 0.5;  // before the goal is given: the first scans
 constexpr double kMessage_s = 0.002;
 constexpr double kThere_m = 0.1;     // the vehicle has arrived: so near, and
@@ -58,6 +60,7 @@ Result<LiveMapper> mapper_of(const Scene& scene, const Options& options) {
                              .box = scene.box,
                              .resolution_m = kResolution_m,
                              .inflation_m = kInflation_m,
+                             .reserve_m = kReserve_m,
                              .body_radius_m = 2.0 * kInflation_m},
                             *world);
 }
