@@ -42,8 +42,10 @@ class Pilot {
           said += std::string(conversions::navigator_state_word(m.state())) + " ";
         });
     node_.subscribe<nav_msgs::msg::Odometry>(
-        "odom", Qos::best_effort(),
-        [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) { odometry.push_back(m); });
+        "odom", Qos::best_effort(), [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) {
+          // One spin may take more than one turn.
+          if (node_.now_ns() <= kEnd_ns) odometry.push_back(m);
+        });
     node_.every(0.05, [this] { send_goal(); });
   }
 
