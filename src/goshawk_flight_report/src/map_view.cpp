@@ -8,6 +8,7 @@
 #include "goshawk/visualization/polytope_mesh.hpp"
 #include "map_window.hpp"
 #include "obstacle_image.hpp"
+#include "plan_summary.hpp"
 #include "plot.hpp"
 #include "style.hpp"
 
@@ -76,22 +77,6 @@ std::vector<Vec3> stops_of(const Flight& flight) {
   return stops;
 }
 
-std::string summary(const Flight& flight) {
-  double length_m = 0.0, duration_s = 0.0, top_m_s = 0.0;
-  for (const Leg& leg : flight.legs) {
-    if (leg.trajectory.pieces.empty()) continue;
-    length_m += leg.trajectory.length_m();
-    duration_s += leg.trajectory.duration_s();
-    top_m_s = std::max(top_m_s, leg.trajectory.peaks().speed_m_s);
-  }
-  if (duration_s <= 0.0) return {};
-  return fmt::format(
-      "planned {:.2f} m in {:.2f} s, mean {:.2f} m/s, top {:.2f} m/s (limits {:.4g} m/s, {:.4g} "
-      "m/s\u00b2)",
-      length_m, duration_s, length_m / duration_s, top_m_s, flight.limits.v_max_m_s,
-      flight.limits.a_max_m_s2);
-}
-
 class MapPicture {
  public:
   MapPicture(const Flight& flight, const Layout& layout)
@@ -120,7 +105,7 @@ class MapPicture {
     }
     ends();
     sheet_.text({kLeft_px, 26.0}, flight.title, kTitle);
-    sheet_.text({kLeft_px, 52.0}, summary(flight), {.size_px = 14.0});
+    sheet_.text({kLeft_px, 52.0}, plan_summary(flight), {.size_px = 14.0});
     legend();
   }
 
