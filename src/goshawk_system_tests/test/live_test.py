@@ -45,6 +45,11 @@ class LiveFlight(SystemTest):
         for name in ("top.png", "side.png", "flight.html", "flight.mcap"):
             self.assertTrue((folder / name).is_file(), name)
 
+    def test_a_launch_file_without_a_lidar_is_refused(self):
+        outcome = self.sandbox.goshawk("fly", "--live", "--launch", "flight", timeout_s=120.0)
+        self.assertEqual(outcome.status, 2, str(outcome))
+        self.assertIn("a sensor named lidar", outcome.err)
+
 
 if __name__ == "__main__":
     harness.main()

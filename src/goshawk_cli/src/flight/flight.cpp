@@ -17,7 +17,9 @@ namespace {
 
 namespace state = goshawk_msgs::msg::NavigatorState_Constants;
 
-constexpr double kReady_s = 30.0;     // longest wait for the stages
+constexpr double kReady_s = 30.0;   // longest wait for the stages
+constexpr double kSensor_s = 10.0;  // for the sensor, once all of them are ready
+constexpr const char* kSensor = "lidar";
 constexpr double kDiscovery_s = 0.5;  // among stages that we have found, it takes no longer
 
 class Flight {
@@ -98,12 +100,25 @@ class Flight {
     if (record_.flown().empty() || record_.goal_readers() == 0) {
       return fail(ErrorCode::stage_silent, "no odometry came, or no stage reads goal_pose");
     }
+    if (auto sensed = wait_for_sensor(); !sensed) return sensed;
     if (!record_.listen(5.0, recorded_)) say_("the recorder does not hear all stages yet");
     // The stages that we have found may not have found each other yet: the first plan needs the
     // map.
     record_.listen(kDiscovery_s, [] { return false; });
     say_("all stages ready");
     return success();
+  }
+
+  // Without it, --live would fly by a map that the launch file knows.
+  Status wait_for_sensor() {
+    if (!options_.live || record_.listen(kSensor_s, [&] { return record_.is_ready(kSensor); })) {
+      return success();
+    }
+    return fail(
+        ErrorCode::invalid_parameter,
+        fmt::format("--live needs a launch file with a sensor named {}, such as live; {} has "
+                    "none, or its sensor did not report ready within {:g} s",
+                    kSensor, options_.launch.empty() ? "live" : options_.launch, kSensor_s));
   }
 
   LegOutcome fly_leg(const Vec3& goal, std::size_t number) {

@@ -24,22 +24,22 @@ FlightRecorder::FlightRecorder(Node& node, FlightEvents events)
     : node_(node),
       events_(std::move(events)),
       goals_(node.advertise<geometry_msgs::msg::PoseStamped>("goal_pose", Qos::reliable_last())) {
-  node.subscribe<msg::StageReport>("stage_report", Qos::latched(100),
-                                   [this](const msg::StageReport& m, const MessageInfo&) {
-                                     events_.report(node_.monotonic_ns(), m);
-                                     const auto role = conversions::stage_role_of(m.stage());
-                                     if (m.request_id() != 0) {
-                                       requests_[m.request_id()].reports[role] = m;
-                                     } else if (m.code() == "ok") {
-                                       ready_.insert(role);
-                                     }
-                                   });
-  node.subscribe<msg::NavigatorState>(
-      "navigator_state", Qos::latched(20),
-      [this](const msg::NavigatorState& m, const MessageInfo&) {
-        events_.navigator(node_.monotonic_ns(), m);
-        navigator_ = m;
+  node.subscribe<msg::StageReport>(
+      "stage_report", Qos::latched(100), [this](const msg::StageReport& m, const MessageInfo&) {
+        events_.report(node_.monotonic_ns(), m);
+        const auto role = conversions::stage_role_of(m.stage());
+        if (m.request_id() != 0) {
+          requests_[m.request_id()].reports[role] = m;
+        } else if (m.code() == "ok") {
+          ready_.insert(role);
+          ready_nodes_.insert(m.node().substr(m.node().rfind('/') + 1));
+        }
       });
+  node.subscribe<msg::NavigatorState>("navigator_state", Qos::latched(20),
+                                      [this](const msg::NavigatorState& m, const MessageInfo&) {
+                                        events_.navigator(node_.monotonic_ns(), m);
+                                        navigator_ = m;
+                                      });
   node.subscribe<msg::Path>(
       "path", Qos::reliable_last(),
       [this](const msg::Path& m, const MessageInfo&) { requests_[m.request().id()].path = m; });

@@ -45,6 +45,8 @@ class FlightRecorder {
   bool listen(double timeout_s, const std::function<bool()>& done);
 
   bool is_ready(StageRole stage) const { return ready_.contains(stage); }
+  /// @param node without its namespace
+  bool is_ready(const std::string& node) const { return ready_nodes_.contains(node); }
   /// The navigator's answer to the newest goal, or nothing before it.
   const std::optional<goshawk_msgs::msg::NavigatorState>& navigator() const { return navigator_; }
   const std::vector<FlownState>& flown() const { return flown_; }
@@ -66,6 +68,7 @@ class FlightRecorder {
   FlightEvents events_;
   runtime::Publisher<geometry_msgs::msg::PoseStamped> goals_;
   std::set<StageRole> ready_;
+  std::set<std::string> ready_nodes_;
   std::optional<goshawk_msgs::msg::NavigatorState> navigator_;
   std::vector<FlownState> flown_;
   bool knows_truth_ = false;
