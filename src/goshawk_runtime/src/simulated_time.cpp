@@ -53,7 +53,7 @@ void Node::Impl::set_time(std::int64_t now_ns) {
 void Node::Impl::require_one_port(const char* call) const {
   if (!has_own_ports) return;
   throw std::logic_error(
-      fmt::format("Node::{}() comes before subscriptions: a reader with a port of "
+      fmt::format("Node::{}() must come before subscriptions: a reader with a port of "
                   "its own does not hear in the order of turns",
                   call));
 }
@@ -108,7 +108,8 @@ void Node::Impl::follow(const Node& node, double timeout_s) {
 
 void Node::lead_lock_step(const LockStep& lock_step) {
   if (!(lock_step.step_s >= 1e-6 && lock_step.step_s <= 1.0) || !(lock_step.speed >= 0.0)) {
-    throw std::invalid_argument("Node::lead_lock_step: a step of 1e-6 to 1 s, a speed above 0");
+    throw std::invalid_argument(
+        "Node::lead_lock_step: the step must be 1e-6 to 1 s, the speed at least 0");
   }
   impl_->require_one_port("lead_lock_step");
   auto& time = impl_->time;

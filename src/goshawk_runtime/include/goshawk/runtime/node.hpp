@@ -115,10 +115,15 @@ class Node {
 
   /// From here on now_ns() and timers follow /clock; 0 before the first message on it.
   void use_simulated_time();
-  /// From here on the node runs only in the turns that a leader gives it; @see LockStep.
+  /// From here on the node runs only in the turns that a leader gives it; @see LockStep. Call it
+  /// before you subscribe.
+  /// @throws std::logic_error a subscription to large messages has a port of its own already
   void run_in_lock_step();
   /// From here on spin() makes simulated time, step by step, for the followers. Before the first
-  /// step every follower must have answered. The leader waits for one that falls silent.
+  /// step every follower must have answered. The leader waits for one that falls silent. Call it
+  /// before you subscribe.
+  /// @throws std::invalid_argument a step outside of 1e-6 to 1 s, or a speed below 0
+  /// @throws std::logic_error as run_in_lock_step()
   void lead_lock_step(const LockStep& lock_step);
 
   template <typename Message>
