@@ -13,8 +13,8 @@ from harness import SystemTest, note
 from stack import spawned
 
 STAGE_KEYS = {"name", "implementation", "code", "compute_us", "wire_us", "counters"}
-LEG_KEYS = {"goal", "arrived", "code", "message", "flight_time_s", "request_id", "stages", "path",
-            "corridor", "trajectory", "tracking"}
+LEG_KEYS = {"goal", "arrived", "code", "message", "flight_time_s", "request_id", "commits", "stages",
+            "path", "corridor", "trajectory", "tracking"}
 KEYS = {"ok", "code", "message", "verdict", "legs", "tracking", "clearance", "folder"}
 FILES = {"flight.json", "flown.csv", "trajectory.csv", "corridor.ply", "world.bt", "top.png",
          "side.png", "time.png"}

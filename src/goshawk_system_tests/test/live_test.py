@@ -34,6 +34,8 @@ class LiveFlight(SystemTest):
         self.assertEqual((flight["code"], flight["verdict"]), ("ok", "safe"))
         leg = flight["legs"][0]
         self.assertTrue(leg["arrived"], leg)
+        self.assertGreater(leg["commits"], 1)
+        self.assertEqual(leg["tracking"], flight["tracking"], "of all that was flown to the one goal")
         track = self.track(folder)
         clearance = second_opinion.smallest_clearance(folder / "world.bt", track, 0.02)
         with_stop = [c for c in commits.lines() if c["stop_pieces"]]

@@ -126,6 +126,7 @@ class Flight {
     leg.goal_map = goal;
     const std::int64_t begin_ns = record_.now_ns();
     std::int64_t said_ns = begin_ns;
+    const std::size_t committed_before = record_.committed().size();
     Status lives = success();
     record_.tell("goal", {{"number", number}, {"goal", to_json(goal)}});
     record_.send_goal(goal);
@@ -143,6 +144,9 @@ class Flight {
     leg.arrived = lives.ok() && answered && answer.state() == state::STATE_ARRIVED;
     leg.request_id = answer.request_id();
     leg.flight_time_s = double(record_.now_ns() - begin_ns) * 1e-9;
+    for (std::size_t i = committed_before; i < record_.committed().size(); ++i) {
+      leg.commits.push_back(record_.committed()[i].id());
+    }
     if (!lives) {
       leg.code = to_string(lives.code());
       leg.message = lives.error().message;

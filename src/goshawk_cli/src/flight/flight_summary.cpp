@@ -72,12 +72,13 @@ Json trajectory_json(const CommittedTrajectory* committed) {
           {"pieces", t.pieces.size()}};
 }
 
-Json tracking_json(const FlightRecorder& record, std::uint64_t request_id) {
+/// @param commits of these only; nullptr: of all
+Json tracking_json(const FlightRecorder& record, const std::vector<std::uint64_t>* commits) {
   double squares = 0.0;
   double largest = 0.0;
   std::size_t count = 0;
   for (const auto& e : record.errors()) {
-    if (request_id != 0 && e.request_id != request_id) continue;
+    if (commits != nullptr && std::ranges::find(*commits, e.request_id) == commits->end()) continue;
     squares += e.position_error_m * e.position_error_m;
     largest = std::max(largest, e.position_error_m);
     ++count;
@@ -99,7 +100,8 @@ Json leg_json(const LegOutcome& leg, const FlightRecorder& record) {
               {"code", leg.code},
               {"message", leg.message},
               {"flight_time_s", leg.flight_time_s},
-              {"request_id", leg.request_id}};
+              {"request_id", leg.request_id},
+              {"commits", leg.commits.size()}};
   const auto request = record.requests().find(leg.request_id);
   const RequestRecord none;
   const RequestRecord& r = request == record.requests().end() ? none : request->second;
@@ -107,7 +109,7 @@ Json leg_json(const LegOutcome& leg, const FlightRecorder& record) {
   object["path"] = path_json(r);
   object["corridor"] = corridor_json(r);
   object["trajectory"] = trajectory_json(committed_of(record, leg.request_id));
-  object["tracking"] = tracking_json(record, leg.request_id);
+  object["tracking"] = tracking_json(record, &leg.commits);
   return object;
 }
 
@@ -121,9 +123,13 @@ std::string text(const Json& object, const char* key) {
 
 void print_leg(const Json& leg, std::size_t index, std::size_t count) {
   const auto& g = leg["goal"];
-  fmt::print("\nleg {} of {} to ({:g}, {:g}, {:g}): {}\n", index, count, g[0].get<double>(),
-             g[1].get<double>(), g[2].get<double>(),
-             leg["arrived"].get<bool>() ? "arrived" : text(leg, "code") + ": " + text(leg, "message"));
+  fmt::print(
+      "\nleg {} of {} to ({:g}, {:g}, {:g}): {}\n", index, count, g[0].get<double>(),
+      g[1].get<double>(), g[2].get<double>(),
+      leg["arrived"].get<bool>() ? "arrived" : text(leg, "code") + ": " + text(leg, "message"));
+  const auto commits = leg["commits"].get<std::size_t>();
+  if (commits > 1)
+    fmt::print("  {} trajectories were committed on the way; of the last:\n", commits);
   for (const auto& stage : leg["stages"]) {
     fmt::print("  {:<21} {:<20} compute {:8.1f} us   wire {:8.1f} us\n", text(stage, "name"),
                text(stage, "implementation"), number(stage, "compute_us"),
@@ -147,8 +153,8 @@ void print_leg(const Json& leg, std::size_t index, std::size_t count) {
         number(t, "max_speed_m_s"), number(t, "max_acceleration_m_s2"));
   }
   if (const auto& t = leg["tracking"]; !t.is_null()) {
-    fmt::print("  tracking   rms {:.1f} mm, largest {:.1f} mm\n", 1e3 * number(t, "rms_error_m"),
-               1e3 * number(t, "max_error_m"));
+    fmt::print("  tracking   rms {:.1f} mm, largest {:.1f} mm{}\n", 1e3 * number(t, "rms_error_m"),
+               1e3 * number(t, "max_error_m"), commits > 1 ? ", of all" : "");
   }
 }
 
@@ -186,7 +192,7 @@ Json summary_json(const FlightOutcome& outcome, const FlightRecorder& record,
   const char* verdict = outcome.touched() ? "touched" : outcome.all_arrived() ? "safe" : "failed";
   if (!outcome.verdict) verdict = "not judged";
   return {{"ok", outcome.ok()},     {"code", code},    {"message", message},
-          {"verdict", verdict},     {"legs", legs},    {"tracking", tracking_json(record, 0)},
+          {"verdict", verdict},     {"legs", legs},    {"tracking", tracking_json(record, nullptr)},
           {"clearance", clearance}, {"folder", folder}};
 }
 

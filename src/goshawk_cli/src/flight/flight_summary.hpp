@@ -15,7 +15,8 @@ struct LegOutcome {
   bool arrived = false;
   std::string code;
   std::string message;
-  double flight_time_s = 0.0;  // from the goal sent to arrived
+  double flight_time_s = 0.0;               // from the goal sent to arrived
+  std::vector<std::uint64_t> commits = {};  // ids of what was committed on the way, in order
 };
 
 struct FlightOutcome {
