@@ -113,12 +113,12 @@ Status Flight::check() const {
 }
 
 std::optional<FlatState> Flight::planned_at(double t_s) const {
-  const Leg* current = nullptr;
-  for (const Leg& leg : legs) {
-    if (leg.trajectory.pieces.empty() || leg.start_t_s > t_s) continue;
-    if (current == nullptr || leg.start_t_s >= current->start_t_s) current = &leg;
-  }
-  if (current == nullptr) return std::nullopt;
+  // Not the one that began last: stamps of the same moment differ by microseconds from message to
+  // message.
+  const auto current = std::find_if(legs.rbegin(), legs.rend(), [&](const Leg& leg) {
+    return !leg.trajectory.pieces.empty() && leg.start_t_s <= t_s;
+  });
+  if (current == legs.rend()) return std::nullopt;
   const double in_leg_s = std::min(t_s - current->start_t_s, current->trajectory.duration_s());
   return current->trajectory.sample(in_leg_s);
 }

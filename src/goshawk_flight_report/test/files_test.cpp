@@ -158,5 +158,21 @@ TEST_F(Files, ThePlanAtATimeIsThatOfTheLegFlownThen) {
   EXPECT_LT((second->position - legs[1].trajectory.sample(1.0).position).norm(), 1e-9);
 }
 
+// A vehicle that plans anew commits the same curve again with a later stop; the stamps of its start
+// differ by microseconds. And what was committed for later may be replaced before it begins.
+TEST_F(Files, ThePlanAtATimeIsTheNewestThatHadBegun) {
+  SampleFlight sample;
+  auto& legs = sample.flight.legs;
+  Leg again = legs[0], replaced = legs[1], newest = legs[1];
+  for (BezierPiece& piece : again.trajectory.pieces) piece.control_points.row(2).array() += 1.0;
+  again.start_t_s -= 2e-6;
+  replaced.start_t_s += 0.5;
+  legs = {legs[0], again, replaced, newest};
+  const auto early = sample.flight.planned_at(legs[0].start_t_s + 1.0);
+  EXPECT_LT((early->position - again.trajectory.sample(1.0 + 2e-6).position).norm(), 1e-9);
+  const auto late = sample.flight.planned_at(newest.start_t_s + 1.0);
+  EXPECT_LT((late->position - newest.trajectory.sample(1.0).position).norm(), 1e-9);
+}
+
 }  // namespace
 }  // namespace goshawk::flight_report::test

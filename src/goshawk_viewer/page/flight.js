@@ -63,10 +63,8 @@ Goshawk.FlightPage = class extends Goshawk.Page {
     $('speed-top').textContent = limits.v_max;
     const facts = [];
     const duration = this.end - this.begin;
-    const flights = this.legs.filter(l => l.trajectory);
-    if (flights.length) {
-      facts.push(['planned', flights.reduce((s, l) => s + l.trajectory.duration, 0).toFixed(2) + ' s']);
-    }
+    const planned = Goshawk.plannedTime(this.legs);
+    if (planned > 0) facts.push(['planned', planned.toFixed(2) + ' s']);
     if (this.track.length) {
       let length = 0, top = 0;
       this.track.forEach((s, k) => {
@@ -88,10 +86,9 @@ Goshawk.FlightPage = class extends Goshawk.Page {
     this.setFacts(facts);
   }
 
-  // The planned state at a time: of the leg that began last; after its end, its last state.
+  // The planned state at a time; after a leg's end, its last state.
   plannedAt(t) {
-    let leg = null;
-    for (const l of this.legs) if (l.trajectory && l.start <= t && (!leg || l.start >= leg.start)) leg = l;
+    const leg = Goshawk.legAt(this.legs, t);
     return leg && leg.trajectory.sample(t - leg.start);
   }
 

@@ -186,6 +186,20 @@ Goshawk.Trajectory = class {
   }
 };
 
+// The newest leg that had begun at a time, of legs in the order in which they were committed.
+// Stamps of the same moment differ by microseconds from message to message.
+Goshawk.legAt = (legs, t) => legs.findLast(l => l.trajectory && l.start <= t);
+
+// Seconds of the plans, each until a newer one took over.
+Goshawk.plannedTime = legs => {
+  let next = Infinity, time = 0;
+  for (const l of legs.filter(l => l.trajectory).reverse()) {
+    time += Math.max(0, Math.min(l.trajectory.duration, next - l.start));
+    next = Math.min(next, l.start);
+  }
+  return time;
+};
+
 // The first t seconds of a piece, as a piece of its own.
 Goshawk.headOf = (piece, t) => {
   let points = piece.points;

@@ -88,6 +88,17 @@ test('what is left of a flight is its length and time from now on', () => {
   assert.deepEqual(left(9), [0, 0]);
 });
 
+test('of legs that replace each other the newest that had begun counts', () => {
+  const leg = (start, duration) => ({start, trajectory: {duration}});
+  const whole = leg(3, 10), again = leg(3 - 2e-6, 10), replaced = leg(90, 5), newest = leg(7, 8);
+  const legs = [{start: 1, trajectory: null}, whole, again, replaced, newest];
+  assert.equal(Goshawk.legAt(legs, 2), undefined);
+  assert.equal(Goshawk.legAt(legs, 5), again);
+  assert.equal(Goshawk.legAt(legs, 95), newest);
+  assert.ok(Math.abs(Goshawk.plannedTime(legs) - 12) < 1e-5);
+  assert.equal(Goshawk.plannedTime([leg(0, 2), leg(5, 2)]), 4, 'time between legs is nobody\'s');
+});
+
 test('the state at one glance leaves out what is not known', () => {
   const leg = {start: 10, trajectory: new Goshawk.Trajectory(
       [{duration: 5, points: [0, 1, 2, 3, 4, 5].map(x => [2 * x, 0, 1])}])};

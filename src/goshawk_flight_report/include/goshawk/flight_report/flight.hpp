@@ -42,7 +42,7 @@ struct Flight {
   std::string title = "Goshawk flight";
   const VoxelGrid* obstacles = nullptr;  // not owned: the map as it is, or nothing
   const VoxelGrid* grown = nullptr;      // not owned: grown by the vehicle, or nothing
-  std::vector<Leg> legs;
+  std::vector<Leg> legs;  // in the order in which they were committed
   std::vector<FlownSample> flown;
   Limits limits;
   double body_radius_m = 0.15;  // [m] obstacles this close in height to the flight are drawn dark
@@ -52,8 +52,8 @@ struct Flight {
   /// polytope, a trajectory or limits that fail their own check
   Status check() const;
 
-  /// Where the vehicle should be at t_s: on the leg that began last, at that leg's end once its
-  /// time is over. Nothing before the first leg, or if no leg has a trajectory.
+  /// Where the vehicle should be at t_s: on the newest leg that had begun, at that leg's end once
+  /// its time is over. Nothing before the first leg, or if no leg has a trajectory.
   std::optional<FlatState> planned_at(double t_s) const;
 };
 
