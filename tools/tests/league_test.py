@@ -52,11 +52,14 @@ class League(unittest.TestCase):
         second, said = self.fly(*words)
         self.assertIn("3 flights are there already", said)
         self.assertEqual(first["rows"], second["rows"])
-        next(self.folder.glob("flights/standardized_true_1_0.json")).unlink()
+        next(self.folder.glob("flights/standardized_true_1_0_cost_0.json")).unlink()
         third, said = self.fly(*words)
         self.assertIn("1/1 standardized_true_1", said)
         for key in ("time_s", "length_m", "of_known_speed"):
             self.assertEqual(first["rows"][0][key], third["rows"][0][key])
+        _, said = self.fly("--worlds", "standardized", "--runs", "1", "--known-runs", "0",
+                           "--tracking", "true", "--latency", "0.01")
+        self.assertIn("1/1 standardized_true_0", said, "plans that cost more make another flight")
 
     def test_what_it_does_not_know_is_refused(self):
         for words, said in [(("--worlds", "jungle"), "forest_hard"),
