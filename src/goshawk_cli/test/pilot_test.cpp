@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <atomic>
 #include <fstream>
 #include <mutex>
 #include <nlohmann/json.hpp>
@@ -10,6 +11,8 @@
 
 #include "child.hpp"
 #include "geometry_msgs.h"
+#include "goshawk/conversions/geometry.hpp"
+#include "goshawk/conversions/grid.hpp"
 #include "goshawk/runtime/node.hpp"
 #include "goshawk_msgs.h"
 #include "nav_msgs.h"
@@ -25,6 +28,7 @@ using goshawk_msgs::msg::MissionState;
 using goshawk_msgs::msg::NavigatorState;
 using goshawk_msgs::msg::OperatorAnswer;
 using goshawk_msgs::msg::OperatorCommand;
+using goshawk_msgs::msg::VoxelGrid;
 namespace mission_state = goshawk_msgs::msg::MissionState_Constants;
 namespace verb = goshawk_msgs::msg::OperatorCommand_Constants;
 namespace state = goshawk_msgs::msg::NavigatorState_Constants;
@@ -57,6 +61,8 @@ class Flight : public testing::Test {
                                                       });
     answers_ = node_->advertise<OperatorAnswer>("operator_answer", Qos::reliable_last());
     missions_ = node_->advertise<MissionState>("mission_state", Qos::latched());
+    maps_ = node_->advertise<VoxelGrid>("map/voxels", Qos::latched());
+    tell_map();
     node_->subscribe<OperatorCommand>("operator_command", Qos::reliable_last(),
                                       [this](const auto& m, const auto&) { on_command(m); });
     node_->subscribe<Mission>("mission", Qos::reliable_last(),
@@ -84,7 +90,12 @@ class Flight : public testing::Test {
     const std::lock_guard lock(mutex_);
     return command_;
   }
+  /// What the guard alone writes.
+  auto guard() {
+    return node_->advertise<goshawk_msgs::msg::GuardVerdict>("guard_verdict", Qos::reliable_last());
+  }
   void mission_is(std::uint8_t state, const char* code = "ok", const char* message = "") {
+    const std::lock_guard lock(mutex_);
     mission_.state(state);
     mission_.code(code);
     mission_.message(message);
@@ -101,13 +112,35 @@ class Flight : public testing::Test {
     m.message(refuses_ ? "no map has come" : "does it");
     EXPECT_TRUE(answers_.publish(m));
   }
+  /// 20 x 20 x 20 m, free but for a wall from x = 8 m on.
+  void tell_map() {
+    const goshawk::Index3 size{20, 20, 20};
+    goshawk::VoxelGrid grid{.geometry = {.resolution_m = 1.0, .size = size},
+                            .grown = goshawk::BitGrid(size, true),
+                            .known = goshawk::BitGrid(size, false, true),
+                            .raw = goshawk::BitGrid(size, true)};
+    for (int x = 8; x < size.x; ++x) {
+      for (int y = 0; y < size.y; ++y) {
+        for (int z = 0; z < size.z; ++z) grid.grown.set({x, y, z}, true);
+      }
+    }
+    VoxelGrid m;
+    m.header(goshawk::conversions::make_header(node_->now_ns()));
+    goshawk::conversions::fill_msg(grid, m);
+    EXPECT_TRUE(maps_.publish(m));
+  }
+  // As the stages do: more is said than what was asked for, before the answer and after it.
   void on_command(const OperatorCommand& m) {
     const std::lock_guard lock(mutex_);
+    if (is_silent_) return;
+    for (int k = 0; k < 5; ++k) EXPECT_TRUE(missions_.publish(mission_));
     answer(m.id(), m.client());
     if (std::exchange(command_, m).id() == m.id()) return;
     if (m.verb() == verb::VERB_TAKEOFF) say(state::STATE_ARRIVED, "ok", "");
   }
   void on_mission(const Mission& m) {
+    for (int k = 0; k < 5; ++k) tell_map();
+    ++missions_sent_;
     answer(m.id(), m.client());
     mission_.id(m.id());
     mission_.name(m.name());
@@ -152,6 +185,7 @@ class Flight : public testing::Test {
   goshawk::runtime::Publisher<NavigatorState> states_;
   goshawk::runtime::Publisher<OperatorAnswer> answers_;
   goshawk::runtime::Publisher<MissionState> missions_;
+  goshawk::runtime::Publisher<VoxelGrid> maps_;
   OperatorCommand command_;
   MissionState mission_;
   geometry_msgs::msg::Point position_ = [] {
@@ -166,7 +200,9 @@ class Flight : public testing::Test {
   std::vector<geometry_msgs::msg::PoseStamped> goals_;
 
  protected:
-  bool refuses_ = false;  // every command
+  std::atomic<bool> refuses_ = false;    // every command
+  std::atomic<bool> is_silent_ = false;  // no command is answered
+  std::atomic<int> missions_sent_ = 0;
 
  private:
   int steps_ = 0;  // since the newest goal
@@ -249,6 +285,43 @@ TEST_F(Flight, MissionThatFailsSaysWhere) {
   const auto outcome = pilot({"mission", mission_file()});
   EXPECT_EQ(outcome.status, 1);
   EXPECT_THAT(outcome.err, HasSubstr("no_path: waypoint 2 of 2: a wall"));
+}
+
+TEST_F(Flight, MissionWithAWaypointInAnObstacleIsNotSentUnlessThatIsAskedFor) {
+  const std::vector<std::string> call{"mission", mission_file("9,5,6")};
+  const auto outcome = pilot(call);
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.err, HasSubstr(".csv, line 3: waypoint 2: "));
+  EXPECT_EQ(missions_sent_, 0);
+  EXPECT_EQ(pilot({call[0], call[1], "--unchecked"}).status, 0);
+  EXPECT_EQ(missions_sent_, 1);
+}
+
+TEST_F(Flight, MissionThatIsOnlyWatchedHasNoTimeOfItsOwn) {
+  mission_is(mission_state::STATE_DONE);
+  const auto outcome = pilot({"mission", "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_TRUE(Json::parse(outcome.out).at("time_s").is_null()) << outcome.out;
+}
+
+/// What a call that gets no answer says, once the machine has found the guard.
+std::string told_of_guard(std::vector<std::string> words) {
+  words.insert(words.end(), {"--namespace", "/uav1", "--ready", ""});
+  std::string said;
+  for (const char* ready_s : {"1", "4", "16", "60"}) {
+    words.back() = ready_s;
+    said = cli_test::run(words).err;
+    if (said.find("the guard flies the vehicle") != std::string::npos) break;
+  }
+  return said;
+}
+
+TEST_F(Flight, ByTheGuardIsToldApartFromNoFlight) {
+  const auto verdicts = guard();
+  is_silent_ = true;
+  for (const char* word : {"hold", "land"}) {
+    EXPECT_THAT(told_of_guard({word}), HasSubstr("command the planner that it guards"));
+  }
 }
 
 TEST(MissionAlone, IsRefusedBeforeAnythingIsSent) {

@@ -21,8 +21,8 @@ struct Head {
   std::uint64_t taken = 0;
 };
 
-Error not_understood() {
-  return fail(ErrorCode::io_failed, "the mission in it is not understood");
+Error not_a_mission() {
+  return fail(ErrorCode::io_failed, "it does not hold a valid mission");
 }
 
 }  // namespace
@@ -41,21 +41,21 @@ stage::MemoryBytes to_bytes(const Memory& memory) {
 
 Result<Memory> from_bytes(const stage::MemoryBytes& bytes) {
   Head head;
-  if (bytes.size() < sizeof head) return not_understood();
+  if (bytes.size() < sizeof head) return not_a_mission();
   std::memcpy(&head, bytes.data(), sizeof head);
   const auto begin = bytes.begin() + std::ptrdiff_t(sizeof head);
-  if (head.mission_size > std::uint64_t(bytes.end() - begin)) return not_understood();
+  if (head.mission_size > std::uint64_t(bytes.end() - begin)) return not_a_mission();
   const auto middle = begin + std::ptrdiff_t(head.mission_size);
   goshawk_msgs::msg::Mission mission_message;
   goshawk_msgs::msg::MissionState state;
   if (!runtime::decode(stage::MemoryBytes(begin, middle), mission_message) ||
       !runtime::decode(stage::MemoryBytes(middle, bytes.end()), state)) {
-    return not_understood();
+    return not_a_mission();
   }
   auto mission = from_msg(mission_message);
   if (!mission || !check(*mission) || state.waypoint() == 0 ||
       state.waypoint() > mission->waypoints.size()) {
-    return not_understood();
+    return not_a_mission();
   }
   return Memory{.mission = *std::move(mission),
                 .state = mission_state_of(state.state()),

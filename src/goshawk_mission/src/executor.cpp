@@ -65,7 +65,7 @@ Status Executor::resume(std::int64_t now_ns) {
 }
 
 Status Executor::cancel() {
-  if (!is_under_way() && state_ != State::paused) {
+  if (!is_under_way() && state_ != State::paused && state_ != State::failed) {
     return fail(ErrorCode::invalid_input,
                 state_ == State::none
                     ? std::string("there is no mission to cancel")

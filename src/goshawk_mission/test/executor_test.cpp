@@ -203,6 +203,15 @@ TEST_F(Missions, AreCancelledForGood) {
   EXPECT_FALSE(executor_.cancel());
 }
 
+TEST_F(Missions, ThatHaveFailedCanBeCancelledSoThatNothingTakesThemUpAgain) {
+  start({{.position_map = kA}});
+  navigator(Does::failed, take().position_map, "a wall");
+  ASSERT_TRUE(executor_.cancel());
+  navigator(Does::pursues, kA);
+  EXPECT_EQ(state(), State::cancelled);
+  EXPECT_FALSE(executor_.resume(now_ns_));
+}
+
 TEST_F(Missions, AreReplacedByANewerOne) {
   start({{.position_map = kA}});
   take();

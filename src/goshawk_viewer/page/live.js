@@ -3,7 +3,7 @@
 const kPlotted = 20;     // [s] that the plots show
 const kTracked = 12000;  // samples of the flown track that are kept
 const kStages = ['map_server', 'path_search', 'corridor_builder', 'trajectory_optimizer', 'navigator',
-                 'tracker', 'vehicle', 'flight_check', 'viewer'];
+                 'guard', 'mission', 'tracker', 'vehicle', 'flight_check', 'viewer'];
 
 // Of OperatorCommand.
 const kVerbs = {hold: 0, resume: 1, resumeMission: 4};
@@ -210,7 +210,7 @@ Goshawk.LivePage = class extends Goshawk.Page {
       this.state.text = linked ? `${name}: sent` : `${name}: not sent, no connection`;
       if (++asked > kAsked) {
         clearInterval(this.asking);
-        this.state.text = `${name}: nobody answers`;
+        this.state.text = `${name}: no answer`;
       }
       this.tell();
     };
@@ -222,7 +222,6 @@ Goshawk.LivePage = class extends Goshawk.Page {
   onAnswer(m) {
     if (m.client !== 'page' || m.id !== this.asked) return;
     clearInterval(this.asking);
-    this.answered = m;
     this.state.text = m.code === 'ok' ? m.message : `${m.code}: ${m.message}`;
     this.tell();
   }

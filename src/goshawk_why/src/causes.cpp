@@ -37,8 +37,8 @@ Reason silent_planner(const Snapshot& s, StageRole stage, double waited_s) {
       .binds = Binds::silent_stage,
       .because = fmt::format("{} has not answered request {} for {:.1f} s.", to_string(stage),
                              s.navigator->request_id, waited_s),
-      .mend = fmt::format("Look whether {} runs, and at its log: goshawk node list. A plan that "
-                          "takes long needs navigator plan_timeout_s.",
+      .mend = fmt::format("Check that {} runs (goshawk node list), and look at its log. If plans "
+                          "take long, raise navigator plan_timeout_s.",
                           to_string(stage)),
       .stage = stage,
       .parameter = "navigator plan_timeout_s"};
@@ -58,7 +58,7 @@ Reason blocked_place(const Snapshot& s, const Vec3& place_map, const char* what,
                                what, goshawk::to_text(place_map), voxel->distance_m,
                                to_text(*voxel), map_text(s), s.map->inflation_m);
   if (!voxel->known) {
-    reason.mend = "Let the sensor see it, or let unknown space be free: map_server unknown.";
+    reason.mend = "Let the sensor see it, or take unknown space as free: map_server unknown.";
     reason.parameter = "map_server unknown";
   } else {
     reason.mend = "Choose another place, or lower map_server radius_m or margin_m.";
@@ -74,7 +74,7 @@ Reason refused(const Snapshot& s) {
   });
   Reason reason{.binds = Binds::refused,
                 .because = fmt::format("{}: {}.", goshawk::to_string(why.code), why.message),
-                .mend = fmt::format("docs/troubleshooting.md says what to do about {}.",
+                .mend = fmt::format("docs/troubleshooting.md lists what to do about {}.",
                                     goshawk::to_string(why.code))};
   if (report != s.reports.end()) reason.stage = report->stage;
   return reason;
@@ -92,7 +92,7 @@ std::optional<Reason> tracker_stop(const Snapshot& s) {
   Reason reason{.binds = Binds::tracker_stops,
                 .because = lands ? "The tracker lands it" : "The tracker brakes it",
                 .mend = lands ? "Look at the navigator's log: the tracker has not heard it."
-                              : "The goal is planned again once it rests.",
+                              : "The navigator plans to the goal again once the vehicle rests.",
                 .stage = StageRole::tracker};
   if (report == s.reports.end()) {
     reason.because += ".";
@@ -122,10 +122,10 @@ Reason failure(const Snapshot& s) {
                                   goshawk::to_text(s.map->geometry.upper_corner_map()))};
     case no_path:
       return {.binds = Binds::unreachable,
-              .because = fmt::format("No way leads to its goal {} {}.", goal, map_text(s)),
+              .because = fmt::format("No path leads to its goal {} {}.", goal, map_text(s)),
               .mend =
-                  "Look for a closed door; a smaller map_server radius_m or margin_m opens "
-                  "narrow ones, and map_server unknown space that was never seen.",
+                  "Look for a closed door. A smaller map_server radius_m or margin_m opens narrow "
+                  "gaps; map_server unknown opens space that was never seen.",
               .stage = StageRole::path_search,
               .parameter = "map_server margin_m"};
     case stage_silent:

@@ -6,9 +6,9 @@
 
 namespace goshawk::why {
 
-/// The tracker brakes, lands, or holds although something is flown. @pre a tracker
+/// The tracker brakes or lands by itself. @pre a tracker
 std::optional<Reason> tracker_stop(const Snapshot& snapshot);
-/// The navigator gave the goal up. @pre a map, a vehicle, a navigator that says so
+/// The navigator gave the goal up. @pre a map, a vehicle, a navigator that has failed
 Reason failure(const Snapshot& snapshot);
 /// It waits for a plan from rest. @pre as failure()
 Reason planning(const Snapshot& snapshot);

@@ -42,8 +42,8 @@ std::optional<Reason> unseen(const Snapshot& s, const Moment& m) {
   Reason reason{.binds = Binds::unseen_ahead,
                 .because = "It stops: what lies ahead was not seen to be free",
                 .mend =
-                    "It flies on when the sensor sees more; navigator fly_unknown and tracker "
-                    "fly_unknown fly through unseen.",
+                    "It flies on once the sensor sees more. With navigator fly_unknown and tracker "
+                    "fly_unknown it flies through space that was not seen.",
                 .parameter = "navigator fly_unknown"};
   const FreeSpace space(s.map);
   const Trajectory& nominal = m.committed.nominal().trajectory();
@@ -101,7 +101,7 @@ Reason flight(const Snapshot& s) {
   if (only_slows(now)) {
     const Vec3 end = flown.sample(flown.duration_s()).position;
     return {.binds = Binds::end_ahead,
-            .because = fmt::format("It slows down for the end of what it flies, {:.2f} m ahead.",
+            .because = fmt::format("It slows down for the end of its trajectory, {:.2f} m ahead.",
                                    (end - now.state.position).norm()),
             .mend = "A higher navigator a_max_m_s2 lets it brake later.",
             .parameter = "navigator a_max_m_s2"};
@@ -111,8 +111,8 @@ Reason flight(const Snapshot& s) {
     return {.binds = Binds::nothing, .because = "It gains speed."};
   }
   return {.binds = Binds::way,
-          .because = "No limit is active: it is slow for a turn of its way.",
-          .mend = "A higher navigator a_max_m_s2 takes turns faster.",
+          .because = "No limit is active: it slows down for a turn.",
+          .mend = "With a higher navigator a_max_m_s2 it takes turns faster.",
           .parameter = "navigator a_max_m_s2"};
 }
 

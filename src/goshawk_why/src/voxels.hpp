@@ -12,7 +12,7 @@ namespace goshawk::why {
 /// @return nothing if the place is free or outside of the map
 std::optional<BlockingVoxel> blocking_voxel(const VoxelGrid& grid, const Vec3& place_map);
 
-/// A voxel as the way's end: the one that a curve would enter.
+/// A voxel that a curve would enter, seen from a place on that curve.
 BlockingVoxel voxel_at(const VoxelGrid& grid, Index3 index, const Vec3& from_map);
 
 /// "the obstacle at (1.500, 2.100, 1.100) (voxel (7, 10, 5))"

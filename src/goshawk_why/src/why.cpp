@@ -14,13 +14,13 @@ constexpr double kMoves_m_s = 0.1;
 using Nav = Snapshot::Navigator::State;
 
 std::string doing_of(const Snapshot& s) {
-  if (!s.vehicle || s.vehicle->age_s > kSilent_s) return "Where the vehicle is, nobody says.";
+  if (!s.vehicle || s.vehicle->age_s > kSilent_s) return "The vehicle's position is unknown.";
   const std::string place = goshawk::to_text(s.vehicle->position_map);
   if (s.vehicle->speed_m_s < kMoves_m_s) return fmt::format("The vehicle hovers at {}.", place);
   return fmt::format("The vehicle flies at {:.2f} m/s at {}.", s.vehicle->speed_m_s, place);
 }
 
-// Who is not heard at all.
+// A part that is not heard at all.
 std::optional<Reason> silent_part(const Snapshot& s) {
   if (!s.navigator || s.navigator->age_s > kSilent_s) {
     return Reason{.binds = Binds::no_navigator,
@@ -28,7 +28,9 @@ std::optional<Reason> silent_part(const Snapshot& s) {
                                  ? fmt::format("The navigator has been silent for {:.1f} s.",
                                                s.navigator->age_s)
                                  : "No navigator is heard.",
-                  .mend = "Start a flight, or look at the navigator's log: goshawk node list.",
+                  .mend =
+                      "Check that a flight runs with the same ROS_DOMAIN_ID and namespace "
+                      "(goshawk node list), and look at the navigator's log.",
                   .stage = StageRole::navigator};
   }
   if (!s.vehicle || s.vehicle->age_s > kSilent_s) {
@@ -42,7 +44,7 @@ std::optional<Reason> silent_part(const Snapshot& s) {
   if (!s.tracker || s.tracker->age_s > kSilent_s) {
     return Reason{.binds = Binds::silent_stage,
                   .because = "The tracker is silent, so no setpoint reaches the vehicle.",
-                  .mend = "Look at the tracker's log: goshawk node list.",
+                  .mend = "Check that it runs (goshawk node list), and look at its log.",
                   .stage = StageRole::tracker};
   }
   return {};

@@ -40,7 +40,7 @@ TEST(Why, WhoIsNotHeardComesFirst) {
   s.vehicle->age_s = 3.0;
   EXPECT_EQ(explain(s).binds, Binds::no_odometry);
   EXPECT_EQ(explain(s).because, "No odometry has come for 3.0 s.");
-  EXPECT_EQ(explain(s).doing, "Where the vehicle is, nobody says.");
+  EXPECT_EQ(explain(s).doing, "The vehicle's position is unknown.");
   s.navigator->age_s = 4.0;
   EXPECT_EQ(explain(s).binds, Binds::no_navigator);
   EXPECT_EQ(explain(s).because, "The navigator has been silent for 4.0 s.");

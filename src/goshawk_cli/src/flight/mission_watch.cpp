@@ -51,8 +51,8 @@ Result<MissionWatch::State> MissionWatch::newest(double timeout_s) {
   if (state_) return *state_;
   if (Interruptible::interrupted()) return fail(ErrorCode::cancelled, "interrupted");
   return fail(ErrorCode::stage_silent,
-              fmt::format("no stage says how a mission stands on {} in domain {} (waited {:g} s): "
-                          "start one with goshawk launch flight_mission, or with goshawk run "
+              fmt::format("no stage that flies missions is heard on {} in domain {} (waited {:g} "
+                          "s): start one with goshawk launch flight_mission, or with goshawk run "
                           "mission beside a flight",
                           topic_, session_.context().domain(), timeout_s));
 }

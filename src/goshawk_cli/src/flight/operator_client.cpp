@@ -15,6 +15,7 @@ namespace goshawk::cli {
 namespace {
 
 namespace msg = goshawk_msgs::msg;
+namespace verb_of = goshawk_msgs::msg::OperatorCommand_Constants;
 using introspection::Interruptible;
 
 constexpr double kAskAgain_s = 0.5;
@@ -43,8 +44,11 @@ Result<std::string> OperatorClient::command(std::uint8_t verb, double height_m, 
   m.client(client_);
   m.verb(verb);
   m.height(height_m);
+  const bool to_mission =
+      verb == verb_of::VERB_RESUME_MISSION || verb == verb_of::VERB_CANCEL_MISSION;
   return ask(
-      m.id(), "operator_command", [&] { return commands_.publish(m); }, timeout_s);
+      {m.id(), topic_in(space_, "operator_command"), to_mission},
+      [&] { return commands_.publish(m); }, timeout_s);
 }
 
 Result<std::uint64_t> OperatorClient::fly(mission::Mission mission, double timeout_s) {
@@ -52,14 +56,15 @@ Result<std::uint64_t> OperatorClient::fly(mission::Mission mission, double timeo
   mission.client = client_;
   const auto m = mission::to_msg(mission, session_.node().now_ns());
   const auto answer = ask(
-      mission.id, "mission", [&] { return missions_.publish(m); }, timeout_s);
+      {mission.id, topic_in(space_, "mission"), true}, [&] { return missions_.publish(m); },
+      timeout_s);
   if (!answer) return answer.error();
   return mission.id;
 }
 
-Result<std::string> OperatorClient::ask(std::uint64_t id, const std::string& topic,
+Result<std::string> OperatorClient::ask(const Question& question,
                                         const std::function<Status()>& send, double timeout_s) {
-  const auto is_answered = [&] { return answer_ && answer_->id() == id; };
+  const auto is_answered = [&] { return answer_ && answer_->id() == question.id; };
   const auto begin = std::chrono::steady_clock::now();
   const auto left_s = [&] {
     return timeout_s -
@@ -74,13 +79,25 @@ Result<std::string> OperatorClient::ask(std::uint64_t id, const std::string& top
     return fail(conversions::error_code_of(answer_->code()), answer_->message());
   }
   if (Interruptible::interrupted()) return fail(ErrorCode::cancelled, "interrupted");
+  return silence(question, timeout_s);
+}
+
+Error OperatorClient::silence(const Question& question, double waited_s) const {
+  if (question.to_mission) {
+    return fail(ErrorCode::stage_silent,
+                fmt::format("no stage that flies missions answers on {} in domain {} (waited {:g} "
+                            "s): start one with goshawk launch flight_mission, or with goshawk run "
+                            "mission beside a flight, with the same ROS_DOMAIN_ID and namespace",
+                            question.topic, session_.context().domain(), waited_s));
+  }
+  if (commands_.matched() == 0 || has_guard(session_, space_)) {
+    return no_taker(session_, space_, question.topic, waited_s);
+  }
   return fail(
       ErrorCode::stage_silent,
-      fmt::format("no stage answers what is sent on {} in domain {} (waited {:g} s). Is a "
-                  "flight running, with the same ROS_DOMAIN_ID and namespace? Missions need "
-                  "the stage mission: goshawk launch flight_mission, or goshawk run mission "
-                  "beside a flight",
-                  topic_in(space_, topic), session_.context().domain(), timeout_s));
+      fmt::format("{} is read in domain {}, but nobody has answered for {:g} s: look at the "
+                  "navigator's log",
+                  question.topic, session_.context().domain(), waited_s));
 }
 
 }  // namespace goshawk::cli

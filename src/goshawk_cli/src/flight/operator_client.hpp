@@ -27,8 +27,14 @@ class OperatorClient {
   Result<std::uint64_t> fly(mission::Mission mission, double timeout_s);
 
  private:
-  Result<std::string> ask(std::uint64_t id, const std::string& topic,
-                          const std::function<Status()>& send, double timeout_s);
+  struct Question {
+    std::uint64_t id;
+    std::string topic;  // full name
+    bool to_mission;    // the stage that flies missions answers, not the navigator
+  };
+  Result<std::string> ask(const Question& question, const std::function<Status()>& send,
+                          double timeout_s);
+  Error silence(const Question& question, double waited_s) const;
 
   introspection::Session& session_;
   std::string space_;

@@ -32,9 +32,28 @@ std::string topic_in(const std::string& space, const std::string& name) {
   return space == "/" ? "/" + name : fmt::format("{}/{}", space, name);
 }
 
+bool has_guard(const introspection::Session& session, const std::string& space) {
+  return std::ranges::any_of(session.endpoints_of(topic_in(space, "guard_verdict")),
+                             [](const runtime::EndpointInfo& endpoint) { return endpoint.writer; });
+}
+
+Error no_taker(const introspection::Session& session, const std::string& space,
+               const std::string& topic, double waited_s) {
+  if (has_guard(session, space)) {
+    return fail(ErrorCode::stage_silent,
+                "the guard flies the vehicle in the navigator's place and takes neither goals nor "
+                "commands: command the planner that it guards");
+  }
+  return fail(ErrorCode::stage_silent,
+              fmt::format("no stage reads {} in domain {} (waited {:g} s). Is a flight running, "
+                          "with the same ROS_DOMAIN_ID and namespace?",
+                          topic, session.context().domain(), waited_s));
+}
+
 Pilot::Pilot(introspection::Session& session, const std::string& space, Say say)
     : session_(session),
       say_(std::move(say)),
+      space_(space),
       goal_topic_(topic_in(space, "goal_pose")),
       goals_(session.node().advertise<geometry_msgs::msg::PoseStamped>(
           goal_topic_, runtime::Qos::reliable_last())) {
@@ -58,21 +77,17 @@ Pilot::Pilot(introspection::Session& session, const std::string& space, Say say)
 Status Pilot::wait_ready(double timeout_s) {
   session_.wait_for(timeout_s, [&] { return position_map_ && goals_.matched() > 0; });
   if (Interruptible::interrupted()) return fail(ErrorCode::cancelled, "interrupted");
-  const int domain = session_.context().domain();
-  if (goals_.matched() == 0) {
-    return fail(ErrorCode::stage_silent,
-                fmt::format("no stage reads {} in domain {} (waited {:g} s). Is a flight running, "
-                            "with the same ROS_DOMAIN_ID and namespace?",
-                            goal_topic_, domain, timeout_s));
-  }
+  if (goals_.matched() == 0) return no_taker(session_, space_, goal_topic_, timeout_s);
   if (!position_map_) {
     return fail(ErrorCode::stage_silent,
-                fmt::format("no odometry came in domain {} within {:g} s: where the vehicle is, is "
-                            "not known",
-                            domain, timeout_s));
+                fmt::format("no odometry came in domain {} within {:g} s: the vehicle's position "
+                            "is unknown",
+                            session_.context().domain(), timeout_s));
   }
   session_.wait_for(0.5,
                     [] { return false; });  // what the navigator said before comes in this time
+  // A recorder reads goals as well: behind the guard nobody flies to them.
+  if (has_guard(session_, space_)) return no_taker(session_, space_, goal_topic_, timeout_s);
   return success();
 }
 

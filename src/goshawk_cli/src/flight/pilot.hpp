@@ -15,6 +15,13 @@ namespace goshawk::cli {
 /// "/uav1" and "odom": "/uav1/odom".
 std::string topic_in(const std::string& space, const std::string& name);
 
+/// Why nobody takes goals or commands: the guard flies the vehicle, or no flight is found.
+/// @param topic that was sent on, full name @param waited_s how long an answer was waited for
+Error no_taker(const introspection::Session& session, const std::string& space,
+               const std::string& topic, double waited_s);
+/// Whether the guard flies the vehicle in the navigator's place.
+bool has_guard(const introspection::Session& session, const std::string& space);
+
 /// How a goal ended.
 struct Arrival {
   Vec3 goal_map = Vec3::Zero();
@@ -55,6 +62,7 @@ class Pilot {
 
   introspection::Session& session_;
   Say say_;
+  std::string space_;
   std::string goal_topic_;
   runtime::Publisher<geometry_msgs::msg::PoseStamped> goals_;
   std::optional<Vec3> position_map_;

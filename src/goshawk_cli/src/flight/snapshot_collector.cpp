@@ -57,13 +57,14 @@ void SnapshotCollector::listen(runtime::Node& node, const std::string& space) {
   });
 }
 
-Status SnapshotCollector::read(recording::Reader& reader, std::uint64_t until_ns) {
+Status SnapshotCollector::read(recording::Reader& reader, const std::string& space,
+                               std::uint64_t until_ns) {
   std::map<std::uint16_t, std::function<void(const std::vector<unsigned char>&, std::int64_t)>> all;
   recording::ReadOptions options{.to_ns = until_ns};
   options.channels.emplace();
   for_each_topic([&]<typename Message>(const char* name, Qos) {
     for (const auto& [id, channel] : reader.channels()) {
-      if (channel.topic != name && !channel.topic.ends_with(std::string("/") + name)) continue;
+      if (channel.topic != topic_in(space, name)) continue;
       options.channels->insert(id);
       all[id] = [this](const std::vector<unsigned char>& bytes, std::int64_t at_ns) {
         Message message;
@@ -97,9 +98,7 @@ void SnapshotCollector::take(const msg::NavigatorState& m, std::int64_t at_ns) {
 }
 
 void SnapshotCollector::take(const msg::TrackingState& m, std::int64_t at_ns) {
-  tracker_ = {{.mode = at_most(m.mode(), Snapshot::Tracker::Mode::land),
-               .position_error_m = m.position_error()},
-              at_ns};
+  tracker_ = {{.mode = at_most(m.mode(), Snapshot::Tracker::Mode::land)}, at_ns};
 }
 
 void SnapshotCollector::take(const msg::MissionState& m, std::int64_t) {
@@ -109,11 +108,11 @@ void SnapshotCollector::take(const msg::MissionState& m, std::int64_t) {
       .message = m.message()};
 }
 
-void SnapshotCollector::take(const msg::StageReport& m, std::int64_t at_ns) {
+void SnapshotCollector::take(const msg::StageReport& m, std::int64_t) {
   const Snapshot::Report report{.stage = conversions::stage_role_of(m.stage()),
                                 .request_id = m.request_id(),
                                 .outcome = {conversions::error_code_of(m.code()), m.message()}};
-  reports_.insert_or_assign(m.node(), Heard<Snapshot::Report>{report, at_ns});
+  reports_.insert_or_assign(m.node(), report);
 }
 
 void SnapshotCollector::take(const msg::CommittedTrajectory& m, std::int64_t) {
@@ -161,10 +160,7 @@ Snapshot SnapshotCollector::snapshot(std::int64_t now_ns) const {
         .since_s = seconds_between(conversions::to_ns(m.header().stamp()), now_ns),
         .age_s = seconds_between(navigator_->at_ns, now_ns)};
   }
-  for (const auto& [node, heard] : reports_) {
-    s.reports.push_back(heard.value);
-    s.reports.back().age_s = seconds_between(heard.at_ns, now_ns);
-  }
+  for (const auto& [node, report] : reports_) s.reports.push_back(report);
   if (committed_) {
     s.flown = Snapshot::Flown{*committed_, seconds_between(committed_->start_time_ns(), now_ns)};
   }

@@ -19,10 +19,11 @@ class SnapshotCollector {
  public:
   /// From now on, in the node's thread. @param space of the vehicle: "/uav1", or "/"
   void listen(runtime::Node& node, const std::string& space);
-  /// All that was recorded until then. @return io_failed
-  Status read(recording::Reader& reader, std::uint64_t until_ns);
+  /// All that was recorded of the vehicle until then. @param until_ns on the recording's clock
+  /// @return io_failed
+  Status read(recording::Reader& reader, const std::string& space, std::uint64_t until_ns);
 
-  /// Whether the navigator and the vehicle were heard.
+  /// Whether navigator, vehicle, tracker and map were heard.
   bool is_complete() const { return navigator_ && vehicle_ && tracker_ && map_.value; }
   why::Snapshot snapshot(std::int64_t now_ns) const;
 
@@ -55,7 +56,7 @@ class SnapshotCollector {
   std::optional<Heard<goshawk_msgs::msg::NavigatorState>> navigator_ = {};
   std::optional<Heard<why::Snapshot::Tracker>> tracker_ = {};
   std::optional<why::Snapshot::Mission> mission_ = {};
-  std::map<std::string, Heard<why::Snapshot::Report>> reports_ = {};  // by node
+  std::map<std::string, why::Snapshot::Report> reports_ = {};  // the newest, by node
   std::optional<CommittedTrajectory> committed_ = {};
   Map map_;
 };

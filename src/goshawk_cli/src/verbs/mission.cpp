@@ -2,6 +2,8 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <memory>
+#include <optional>
 
 #include "flight/mission_watch.hpp"
 #include "flight/operator_client.hpp"
@@ -16,6 +18,7 @@ namespace goshawk::cli {
 namespace {
 
 namespace state_of = goshawk_msgs::msg::MissionState_Constants;
+using Steady = std::chrono::steady_clock;
 
 constexpr double kMapWait_s = 2.0;
 
@@ -49,12 +52,15 @@ int print_summary(const mission::MissionFile& file, const Console& console) {
 Status check_map(introspection::Session& session, const std::string& space, const std::string& path,
                  const mission::MissionFile& file) {
   using Grid = goshawk_msgs::msg::VoxelGrid;
-  std::optional<Grid> newest;
+  // Maps come as long as the session lasts, after this function has returned.
+  const auto first = std::make_shared<std::optional<Grid>>();
   session.node().subscribe<Grid>(topic_in(space, "map/voxels"), runtime::Qos::latched(),
-                                 [&newest](const Grid& m, const auto&) { newest = m; });
-  session.wait_for(kMapWait_s, [&] { return newest.has_value(); });
-  if (!newest) return success();  // the navigator will say what is wrong with it
-  const auto grid = conversions::from_msg(*newest);
+                                 [first](const Grid& m, const auto&) {
+                                   if (!*first) *first = m;
+                                 });
+  session.wait_for(kMapWait_s, [&] { return first->has_value(); });
+  if (!*first) return success();  // the navigator will say what is wrong with it
+  const auto grid = conversions::from_msg(**first);
   if (!grid) return success();
   for (std::size_t i = 0; i < file.lines.size(); ++i) {
     const auto place = locate(*grid, file.mission.waypoints[i].position_map, Endpoint::goal);
@@ -90,31 +96,37 @@ class ProgressLine {
   bool open_ = false;
 };
 
-int tell_end(const MissionWatch::State& state, double time_s, const Console& console) {
+/// @param time_s since it was sent; none: somebody else has sent it
+int tell_end(const MissionWatch::State& state, std::optional<double> time_s,
+             const Console& console) {
   if (state.state() != state_of::STATE_DONE) {
     return console.not_done({conversions::error_code_of(state.code()), state.message()});
   }
   if (console.json()) {
     Json object = ok_json();
-    object.update({{"name", state.name()}, {"waypoints", state.waypoints()}, {"time_s", time_s}});
+    object.update({{"name", state.name()},
+                   {"waypoints", state.waypoints()},
+                   {"time_s", time_s ? to_json(*time_s) : Json(nullptr)}});
     console.print(object);
   } else {
-    fmt::print("{}: all {} waypoints reached after {:.1f} s\n", state.name(), state.waypoints(),
-               time_s);
+    fmt::print("{}: all {} waypoints reached{}\n", state.name(), state.waypoints(),
+               time_s ? fmt::format(" after {:.1f} s", *time_s) : "");
   }
   return kDone;
 }
 
-int follow(MissionWatch& watch, std::uint64_t id, const MissionOptions& o, const Console& console) {
-  const auto begin = std::chrono::steady_clock::now();
+/// @param sent when the mission was sent, if this process did
+int follow(MissionWatch& watch, std::uint64_t id, std::optional<Steady::time_point> sent,
+           const MissionOptions& o, const Console& console) {
   const auto end = [&] {
     ProgressLine line(console);
     return watch.follow(id, o.vehicle.timeout_s,
                         [&line](const std::string& text, bool is_new) { line.tell(text, is_new); });
   }();
   if (!end) return console.not_done(end.error());
-  const auto took = std::chrono::steady_clock::now() - begin;
-  return tell_end(*end, std::chrono::duration<double>(took).count(), console);
+  std::optional<double> time_s;
+  if (sent) time_s = std::chrono::duration<double>(Steady::now() - *sent).count();
+  return tell_end(*end, time_s, console);
 }
 
 int watch_or_cancel(introspection::Session& session, const std::string& space,
@@ -134,7 +146,7 @@ int watch_or_cancel(introspection::Session& session, const std::string& space,
   if (state->state() == state_of::STATE_NONE) {
     return console.not_done({ErrorCode::invalid_input, "no mission was sent yet: name its file"});
   }
-  return follow(watch, state->id(), o, console);
+  return follow(watch, state->id(), {}, o, console);
 }
 
 int send(introspection::Session& session, const std::string& space,
@@ -148,7 +160,7 @@ int send(introspection::Session& session, const std::string& space,
   OperatorClient client(session, space);
   const auto id = client.fly(file.mission, o.vehicle.ready_s);
   if (!id) return console.failed(id.error());
-  return o.detach ? print_summary(file, console) : follow(watch, *id, o, console);
+  return o.detach ? print_summary(file, console) : follow(watch, *id, Steady::now(), o, console);
 }
 
 int run_mission(const MissionOptions& o, const Console& console) {

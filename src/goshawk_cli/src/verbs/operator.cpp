@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "flight/mission_watch.hpp"
 #include "flight/operator_client.hpp"
 #include "flight/pilot.hpp"
 #include "json.hpp"
@@ -11,7 +14,6 @@ namespace goshawk::cli {
 namespace {
 
 namespace verb_of = goshawk_msgs::msg::OperatorCommand_Constants;
-using goshawk_msgs::msg::MissionState;
 namespace mission_state = goshawk_msgs::msg::MissionState_Constants;
 
 /// A flight that runs, with what the operator's verbs need of it.
@@ -77,13 +79,11 @@ int climb_or_descend(const VehicleOptions& o, std::uint8_t verb, double height_m
 }
 
 /// Whether a mission waits for somebody to resume it.
-bool mission_waits(introspection::Session& session, const std::string& space) {
-  std::optional<MissionState> state;
-  session.node().subscribe<MissionState>(
-      topic_in(space, "mission_state"), runtime::Qos::latched(),
-      [&state](const MissionState& m, const auto&) { state = m; });
-  const bool may_fly = !session.endpoints_of(topic_in(space, "mission_state")).empty();
-  session.wait_for(may_fly ? 5.0 : 0.5, [&] { return state.has_value(); });
+bool mission_waits(const RunningFlight& flight, MissionWatch& watch) {
+  const bool has_stage =
+      std::ranges::any_of(flight.session->endpoints_of(topic_in(flight.space, "mission_state")),
+                          [](const auto& endpoint) { return endpoint.writer; });
+  const auto state = watch.newest(has_stage ? 5.0 : 0.5);
   return state && (state->state() == mission_state::STATE_PAUSED ||
                    state->state() == mission_state::STATE_FAILED);
 }
@@ -93,9 +93,9 @@ int resume(const VehicleOptions& o, const Console& console) {
   if (!flight) return console.failed(flight.error());
   Pilot& pilot = *flight->pilot;
   if (auto status = pilot.wait_ready(o.ready_s); !status) return console.failed(status.error());
-  const std::uint8_t verb = mission_waits(*flight->session, flight->space)
-                                ? verb_of::VERB_RESUME_MISSION
-                                : verb_of::VERB_RESUME;
+  MissionWatch watch(*flight->session, flight->space);  // hears missions until this verb ends
+  const std::uint8_t verb =
+      mission_waits(*flight, watch) ? verb_of::VERB_RESUME_MISSION : verb_of::VERB_RESUME;
   const auto answer = flight->client->command(verb, 0.0, o.ready_s);
   if (!answer) return console.failed(answer.error());
   return tell(*answer, pilot.position_map(), console);

@@ -1,8 +1,10 @@
 #include "goshawk/why/why.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <filesystem>
+#include <set>
 
 #include "flight/snapshot_collector.hpp"
 #include "goshawk/introspection/session.hpp"
@@ -58,9 +60,29 @@ std::string recording_in(const std::string& path) {
   return std::filesystem::exists(file) ? file.string() : path;
 }
 
+/// The vehicle's namespace: the one that was asked for, or the only one that was recorded.
+Result<std::string> space_in(const recording::Reader& reader, const std::string& wanted) {
+  auto space = introspection::full_topic_name(wanted);
+  if (!space || *space != "/") return space;
+  constexpr std::string_view kOfEachVehicle = "/navigator_state";
+  std::set<std::string> spaces;
+  for (const auto& [id, channel] : reader.channels()) {
+    if (!channel.topic.ends_with(kOfEachVehicle)) continue;
+    const auto length = channel.topic.size() - kOfEachVehicle.size();
+    spaces.insert(length == 0 ? "/" : channel.topic.substr(0, length));
+  }
+  if (spaces.empty() || spaces.contains("/")) return space;
+  if (spaces.size() == 1) return *spaces.begin();
+  return fail(ErrorCode::invalid_parameter,
+              fmt::format("several vehicles were recorded: name one with --namespace ({})",
+                          fmt::join(spaces, ", ")));
+}
+
 int why_recorded(const WhyOptions& o, const Console& console) {
   auto reader = recording::Reader::open(recording_in(o.recording));
   if (!reader) return console.failed(reader.error());
+  const auto space = space_in(*reader, o.vehicle.space);
+  if (!space) return console.wrong_call(space.error());
   const double length_s = double(reader->end_ns() - reader->start_ns()) * 1e-9;
   const double at_s = o.at_s.value_or(length_s);
   if (at_s > length_s) {
@@ -70,7 +92,7 @@ int why_recorded(const WhyOptions& o, const Console& console) {
   }
   const std::uint64_t until_ns = reader->start_ns() + std::uint64_t(at_s * 1e9);
   SnapshotCollector collector;
-  if (auto status = collector.read(*reader, until_ns); !status) {
+  if (auto status = collector.read(*reader, *space, until_ns); !status) {
     return console.failed(status.error());
   }
   return tell(collector.snapshot(std::int64_t(until_ns)), console);

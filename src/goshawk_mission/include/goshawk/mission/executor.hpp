@@ -72,8 +72,8 @@ class Executor {
   Status start(Mission mission, std::int64_t now_ns);
   /// Sends the waypoint's goal again. @return invalid_input if nothing is paused or has failed
   Status resume(std::int64_t now_ns);
-  /// Ends the mission; the goal that the navigator has stays its goal.
-  /// @return invalid_input if none is under way
+  /// Ends the mission, also one that is paused or has failed; the goal that the navigator has stays
+  /// its goal. @return invalid_input if there is none, or it is over
   Status cancel();
 
   void on_navigator(const NavigatorNews& news, std::int64_t now_ns);

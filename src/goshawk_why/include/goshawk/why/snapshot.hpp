@@ -12,15 +12,15 @@
 
 namespace goshawk::why {
 
-/// What a flight's stages say at one moment. Ages count from the arrival of the newest message on
-/// each topic. Frame `map`.
+/// What a flight's stages have last reported, at one moment. Ages count from the arrival of the
+/// newest message on each topic. Frame `map`.
 struct Snapshot {
   struct Vehicle {
     Vec3 position_map = Vec3::Zero();
     double speed_m_s = 0.0;
     double age_s = 0.0;
   };
-  /// Who flies, as the vehicle tells.
+  /// Who controls the vehicle, by its own report.
   struct Status {
     enum class Control { nobody, goshawk, pilot, autopilot };
     bool armed = true;
@@ -39,7 +39,6 @@ struct Snapshot {
   struct Tracker {
     enum class Mode { idle, hold, follow, brake, land };
     Mode mode = Mode::idle;
-    double position_error_m = 0.0;
     double age_s = 0.0;
   };
   /// The newest report of a stage.
@@ -47,7 +46,6 @@ struct Snapshot {
     StageRole stage = StageRole::other;
     std::uint64_t request_id = 0;
     Error outcome{ErrorCode::ok, ""};
-    double age_s = 0.0;
   };
   /// What is flown, or held at its end.
   struct Flown {

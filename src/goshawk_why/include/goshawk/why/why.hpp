@@ -12,10 +12,10 @@ namespace goshawk::why {
 enum class Binds {
   nothing,        // it has arrived, or is on its way and gains speed
   no_navigator,   // no sign of life
-  no_odometry,    // nobody says where the vehicle is
+  no_odometry,    // the vehicle's position is unknown
   disarmed,       // the motors may not turn
   other_control,  // a person or the autopilot flies
-  operator_hold,  // somebody holds it
+  operator_hold,  // an operator holds it
   mission_waits,  // a mission is paused or has failed
   no_goal,        // nothing was asked for
   no_map,         // nothing can be checked
@@ -23,16 +23,16 @@ enum class Binds {
   goal_blocked,   // the goal is in an obstacle, or too near to one
   goal_unknown,   // the goal is in space that was never seen
   goal_outside,   // the map does not reach there
-  start_blocked,  // the vehicle's own place is
-  unreachable,    // no way leads to the goal
-  refused,        // a stage says why not, for another reason
-  tracker_stops,  // the tracker brakes, holds or lands by itself
+  start_blocked,  // the vehicle's own place is in or too near to an obstacle, or was never seen
+  unreachable,    // no path leads to the goal
+  refused,        // a stage refused it for another reason
+  tracker_stops,  // the tracker brakes or lands by itself
   unseen_ahead,   // what is flown ends before space that was never seen
   speed_limit,    // what is flown is at this limit now
   acceleration_limit,
   jerk_limit,
-  end_ahead,  // it slows down towards the end of what is flown
-  way,        // below all limits: the way, with its turns and obstacles
+  end_ahead,  // it slows down towards the end of its trajectory
+  way,        // below all limits: its trajectory turns
 };
 /// "goal_blocked"
 std::string_view to_string(Binds binds);
@@ -51,12 +51,12 @@ struct Reason {
   std::string because = {};  // what binds, a sentence
   std::string mend = {};     // what would change it, a sentence; may be empty
   std::optional<BlockingVoxel> voxel = {};
-  std::optional<StageRole> stage = {};  // that is silent, or refuses
+  std::optional<StageRole> stage = {};  // that is silent, refuses, or stops the vehicle
   std::string parameter = {};           // "navigator v_max_m_s", that would change it
 };
 
-/// What the vehicle does, and the one thing that binds. Looks at causes in the order in which one
-/// hides the next: whoever does not hear the vehicle cannot blame the goal.
+/// What the vehicle does, and the one thing that binds. Looks first at what the later causes depend
+/// on: a goal is judged only if vehicle, navigator, tracker and map are heard.
 Reason explain(const Snapshot& snapshot);
 
 /// Silent for longer than this, a stage or the vehicle counts as lost.
