@@ -86,8 +86,8 @@ class Examiner {
     return success();
   }
 
-  /// On a busy machine its writer may not have found the reader of its answers even now, which
-  /// nothing tells but an answer.
+  /// On a busy machine the stage's writer may not have found our reader yet. Only an answer shows
+  /// that it has.
   void meet(const Input& good) {
     constexpr int kMost = 4;
     Input sent;

@@ -8,15 +8,25 @@
 namespace goshawk {
 namespace {
 
+constexpr double kBriefestStep_s = 1e-6;
 constexpr double kLongestStep_s = 10.0;
+// [m], [m/s], [m/s^2] beyond any vehicle; what is computed from less stays finite.
+constexpr double kMostOfAState = 1e6;
 constexpr double kFallbackAtRest = 1e-6;  // [m/s] and [m/s^2]
 constexpr int kLooksPerStep = 4;
+
+// NaN is not within bounds.
+bool is_within_bounds(const FlatState& state) {
+  return (state.position.array().abs() <= kMostOfAState).all() &&
+         (state.velocity.array().abs() <= kMostOfAState).all() &&
+         (state.acceleration.array().abs() <= kMostOfAState).all();
+}
 
 }  // namespace
 
 FlatState FallbackStop::at(double t_s) const {
-  if (t_s >= duration_s()) return {.position = states.back().position};
   const double t = std::max(0.0, t_s);
+  if (t >= duration_s()) return {.position = states.back().position};
   const std::size_t i = std::min(std::size_t(t / step_s), states.size() - 2);
   const double in_step_s = std::clamp(t - step_s * double(i), 0.0, step_s);
   return BezierPiece::between(states[i], states[i + 1], step_s).sample(in_step_s);
@@ -51,12 +61,13 @@ Status FallbackStop::check() const {
     return refuse(
         fmt::format("it has {} states: it must have 1 to {}", states.size(), kMostStates));
   }
-  if (!(step_s > 0.0 && step_s <= kLongestStep_s)) {
-    return refuse(fmt::format("its step is {:.3g} s: it must be above 0 and at most {:g} s", step_s,
-                              kLongestStep_s));
+  if (!(step_s >= kBriefestStep_s && step_s <= kLongestStep_s)) {
+    return refuse(fmt::format("its step is {:.3g} s: it must be {:g} to {:g} s", step_s,
+                              kBriefestStep_s, kLongestStep_s));
   }
-  if (!std::ranges::all_of(states, &FlatState::is_finite)) {
-    return refuse("a number in it is not finite");
+  if (!std::ranges::all_of(states, is_within_bounds)) {
+    return refuse(
+        fmt::format("a number in it is not finite, or beyond {:g} m, m/s or m/s^2", kMostOfAState));
   }
   const FlatState& last = states.back();
   if (last.velocity.norm() > kFallbackAtRest || last.acceleration.norm() > kFallbackAtRest) {

@@ -46,9 +46,8 @@ class SlowedPath {
   FlatState start() const { return at({0.0, 1.0, 0.0}); }
   /// Quintics between its states: they leave the path by some 0.1 um. Each is in the polytope that
   /// the path is in there. @pre law.passes_s() < left_s()
-  /// @param cut_at_ramps pieces end where the deceleration has risen and where it begins to fall:
-  /// on
-  ///   a straight line at constant speed they are then exact, and none exceeds its limit
+  /// @param cut_at_ramps pieces end where the deceleration has risen and where it begins to fall.
+  ///   On a straight line at constant speed they are then exact, and none exceeds its limit
   Trajectory by(const TimeLaw& law, bool cut_at_ramps = false) const;
 
  private:

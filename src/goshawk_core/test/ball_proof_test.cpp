@@ -78,9 +78,10 @@ TEST(BallProof, ACurveIsFreeExactlyAsLongAsTheBallKeepsOutOfWhatIsOccupiedOrUnse
     if ((grid.geometry.upper_corner_map() - high).minCoeff() < 0.0) continue;
     const auto found = find_obstruction(space, curve);
     const double until_s = found ? found->time_s : curve.duration_s;
-    for (int i = 0; i <= 400 && until_s > 0.0; ++i) {  // it may begin too near
+    // A curve that is blocked at its start claims nothing. kTouch_m is what a proof may give away.
+    for (int i = 0; i <= 400 && until_s > 0.0; ++i) {
       const double t_s = until_s * i / 400;
-      ASSERT_GE(nearest_m(grid, curve.sample(t_s).position), kBall_m - 2.0 * kTouch_m);
+      ASSERT_GE(nearest_m(grid, curve.sample(t_s).position), kBall_m - 1.01 * kTouch_m);
     }
     if (found) {
       ++blocked;

@@ -46,7 +46,7 @@ TEST(FallbackStop, BeginsWithItsFirstStateAndEndsAtRest) {
   }
   const FallbackStop held{.step_s = 0.05, .states = {{.position = {1, 2, 3}}}};
   ASSERT_TRUE(held.check());
-  EXPECT_EQ(held.at(0.0).position, Vec3(1, 2, 3));
+  for (const double t : {-0.5, 0.0, 1.0}) EXPECT_EQ(held.at(t).position, Vec3(1, 2, 3)) << t;
   EXPECT_EQ(held.nearest_time_s({0, 0, 0}, -1.0, 1.0), 0.0);
 }
 
@@ -72,8 +72,12 @@ TEST(FallbackStop, IsRefusedIfItCannotBeFlown) {
       {"1001 states", [](auto& s) { s.states.resize(1001); }},
       {"its step is 0 s", [](auto& s) { s.step_s = 0.0; }},
       {"its step is nan s", [](auto& s) { s.step_s = std::nan(""); }},
+      {"its step is 1e-300 s", [](auto& s) { s.step_s = 1e-300; }},
       {"its step is 11 s", [](auto& s) { s.step_s = 11.0; }},
       {"not finite", [&](auto& s) { s.states[3].velocity.y() = inf; }},
+      {"not finite", [](auto& s) { s.states[4].position.z() = std::nan(""); }},
+      {"beyond", [](auto& s) { s.states[5].position.x() = -1e300; }},
+      {"beyond", [](auto& s) { s.states[6].acceleration.x() = 1e7; }},
       {"moves", [](auto& s) { s.states.back().velocity.x() = 0.1; }},
       {"moves", [](auto& s) { s.states.back().acceleration.z() = 0.1; }},
   };

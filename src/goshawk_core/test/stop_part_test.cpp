@@ -157,9 +157,9 @@ TEST(LatestStop, OnAStraightLineItBrakesAsLateAsPhysicsAllows) {
   }
 }
 
-// No moment more than the step later has a stop, of any of many decelerations, that is free and
-// within the limits: looked for by another way to slow down, from each moment on.
-TEST(LatestStop, NoMuchLaterMomentWouldDo) {
+// Between bounds: no stop begins later than the hardest brake of all must, and ours not much
+// sooner.
+TEST(LatestStop, BeginsNotMuchSoonerThanTheHardestBrakeMust) {
   Random random(13);
   int looked = 0;
   for (int run = 0; run < 30; ++run) {

@@ -31,7 +31,7 @@ TEST(Passing, TheSameCurveGoesOnIfItIsSentAgain) {
   Harness h;
   const Plan plan = straight_plan(kHome, kFar, 16.0, h.now);
   h.send(plan);
-  const double behind_s = 0.05;  // it began a lead after its own time
+  const double behind_s = 0.05;  // a commit begins this long after the plan's own start
   h.pass(4.0);
   Plan again = plan;
   *again.start_time_ns += std::int64_t(behind_s * 1e9);

@@ -18,8 +18,7 @@ using goshawk_msgs::msg::Turn;
 
 constexpr const char* kDone = "/turn_done";
 constexpr double kAskAgain_s = 0.5;  // a follower that died may come back under the same name
-// Followers find each other as their leader finds them: once that has found nothing new for so
-// long.
+// Followers count as having found each other once their leader has found nothing new for so long.
 constexpr std::chrono::milliseconds kQuiet{1000};
 constexpr std::chrono::seconds kMostSettling{10};  // strangers may come and go all the time
 

@@ -144,7 +144,7 @@ TEST(Noisy, GoalsAreReachedWhereverWallsLieInTheirVoxels) {
 }
 
 // It flies to what lies behind it, and back.
-TEST(Noisy, AViewOf90DegreesIsEnoughForTheVehicleLooksWhereItFlies) {
+TEST(Noisy, AViewOf90DegreesIsEnoughBecauseTheVehicleLooksWhereItFlies) {
   NoisyFlight flight({.kind = "forest", .seed = 9, .view_rad = 0.5 * std::numbers::pi});
   EXPECT_TRUE(flight.fly(kTo)) << flight.lab.state().reason.message;
   EXPECT_TRUE(flight.fly(kFrom)) << flight.lab.state().reason.message;

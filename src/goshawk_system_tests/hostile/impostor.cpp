@@ -65,6 +65,7 @@ class Impostor {
         {"update", &Impostor::updates},
         {"odom", &Impostor::odometry},
         {"command", &Impostor::commands},
+        {"fallback_stop", &Impostor::fallback_stops},
         {"report", &Impostor::reports},
     };
     return all;
@@ -183,6 +184,17 @@ class Impostor {
     node_.every(1.0 / options_.rate, [this] { send(commands_, full_tilt(node_.now_ns())); });
   }
 
+  /// Each begins where the vehicle is, so that it would be kept.
+  void fallback_stops() {
+    fallback_stops_ = node_.advertise<msg::FallbackStop>("fallback_stop", Qos::best_effort());
+    watch_vehicle();
+    node_.every(1.0 / options_.rate, [this] {
+      if (at_map_) {
+        send(fallback_stops_, stop_elsewhere(*at_map_, options_.to_map, node_.now_ns()));
+      }
+    });
+  }
+
   /// Says in the search's name that there is no path.
   void reports() {
     reports_ = node_.advertise<msg::StageReport>("stage_report", Qos::latched(20));
@@ -216,6 +228,7 @@ class Impostor {
   runtime::Publisher<msg::VoxelGridUpdate> updates_;
   runtime::Publisher<nav_msgs::msg::Odometry> odometry_;
   runtime::Publisher<msg::AttitudeSetpoint> commands_;
+  runtime::Publisher<msg::FallbackStop> fallback_stops_;
   runtime::Publisher<msg::StageReport> reports_;
 };
 

@@ -141,4 +141,12 @@ msg::AttitudeSetpoint full_tilt(std::int64_t now_ns) {
   return m;
 }
 
+msg::FallbackStop stop_elsewhere(const Vec3& from, const Vec3& to, std::int64_t now_ns) {
+  msg::FallbackStop m;
+  m.header(conversions::make_header(now_ns));
+  conversions::fill_msg(
+      FallbackStop{.step_s = 1.0, .states = {{.position = from}, {.position = to}}}, m);
+  return m;
+}
+
 }  // namespace goshawk::hostile

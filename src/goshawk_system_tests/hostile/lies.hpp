@@ -36,4 +36,8 @@ nav_msgs::msg::Odometry moved(nav_msgs::msg::Odometry odometry, const Vec3& by,
 /// Full thrust, tilted.
 goshawk_msgs::msg::AttitudeSetpoint full_tilt(std::int64_t now_ns);
 
+/// A fallback stop from rest at `from` to rest at `to`, in a second, through whatever is between.
+goshawk_msgs::msg::FallbackStop stop_elsewhere(const Vec3& from, const Vec3& to,
+                                               std::int64_t now_ns);
+
 }  // namespace goshawk::hostile

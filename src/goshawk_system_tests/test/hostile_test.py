@@ -24,6 +24,7 @@ LIES = {
     "odom": ([], "tracker"),
     "command at 500 Hz": (["--rate", 500], "simulator"),
     "command at 5,000 Hz": (["--rate", 5000], "simulator"),
+    "fallback_stop": (["--rate", 100], "simulator"),
 }
 MOST_LEGS = 6  # with one lie
 
@@ -68,7 +69,7 @@ class HostileParticipant(StackTest):
 
     def test_2_parameters_that_the_launch_has_fixed_stay(self):
         outcome = self.sandbox.goshawk("param", "set", "navigator", "v_max_m_s", "9", "--json",
-                                       "--timeout", "60", timeout_s=40)
+                                       "--timeout", "60", timeout_s=90)
         self.assertNotEqual(outcome.status, 0, str(outcome))
         self.assertEqual(json.loads(outcome.out)["code"], "not_permitted", str(outcome))
 

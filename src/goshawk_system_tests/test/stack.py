@@ -106,7 +106,7 @@ class Stack:
 
     def pub(self, topic, kind, message):
         result = self.sandbox.goshawk("topic", "pub", topic, kind, json.dumps(message), "--json",
-                                      "--timeout", "60", "--once", timeout_s=30)
+                                      "--timeout", "60", "--once", timeout_s=90)
         if result.status != 0:
             raise AssertionError(f"topic pub: {result}")
         return result

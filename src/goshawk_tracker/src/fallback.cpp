@@ -10,6 +10,7 @@ namespace goshawk::tracker {
 namespace {
 
 constexpr double kStep_s = 0.05;
+constexpr double kLeastStep_s = 1e-3;  // the last moment before rest
 
 }  // namespace
 
@@ -21,7 +22,7 @@ bool Tracker::make_fallback(FallbackStop& stop, std::int64_t now_ns) const {
   braked.brake(brake_ns, config_.brake_acceleration_m_s2);
   const double rest_s = braked.seconds_to_rest(now_ns);
   const int steps = std::min(int(std::ceil(rest_s / kStep_s)), int(FallbackStop::kMostStates) - 1);
-  stop.step_s = steps > 0 ? rest_s / steps : kStep_s;
+  stop.step_s = steps > 0 ? std::max(rest_s / steps, kLeastStep_s) : kStep_s;
   stop.states.resize(std::size_t(steps) + 1);
   for (int i = 0; i <= steps; ++i) {
     const std::int64_t time_ns = now_ns + std::llround(1e9 * stop.step_s * i);

@@ -139,6 +139,17 @@ TEST_P(Kills, InWindTouchNothing) {
   std::printf("in wind: at most %.4f m off the path\n", off_path_m);
 }
 
+// What the tests above would see if the stop did nothing.
+TEST_P(Kills, WithoutAFallbackStopLeaveThePathByMoreThanTheMargin) {
+  simulator::Config vehicle;
+  vehicle.fallback_tolerance_m = 0.0;
+  double off_path_m = 0.0;
+  for (std::int64_t t = kSecond; t < end_ns(); t += 260'000'000) {
+    off_path_m = std::max(off_path_m, kill_at(t, 1.0, vehicle).off_path_m);
+  }
+  EXPECT_GT(off_path_m, 4.0 * kMargin_m);
+}
+
 INSTANTIATE_TEST_SUITE_P(Controllers, Kills, testing::Values("pd", "geometric"),
                          [](const auto& each) { return std::string(each.param); });
 
@@ -172,6 +183,29 @@ TEST(FallbackStops, AreTheReferenceUntilTheyBrakeAndThenItsPath) {
   }
 }
 
+TEST(FallbackStops, OfTheLastNanosecondBeforeRestAreWhatAVehicleTakes) {
+  const Draft path = there_and_back();
+  const std::int64_t end_ns = kSecond + std::llround(path.trajectory.duration_s() * 1e9);
+  Tracker tracker = Tracker::create(without_map(config_for("pd"))).value();
+  RigidBodyState state;
+  state.position_map = {0, 0, 1};
+  ASSERT_TRUE(tracker.step(state, kSecond));
+  ASSERT_TRUE(tracker.accept(path, kSecond));
+  std::int64_t t = kSecond;
+  while (t < end_ns - 1) {
+    t = std::min(t + 20'000'000, end_ns - 1);
+    const FlatState wanted = path.trajectory.sample(double(t - kSecond) * 1e-9);
+    state.position_map = wanted.position;
+    state.velocity_map = wanted.velocity;
+    ASSERT_TRUE(tracker.step(state, t));
+  }
+  FallbackStop stop;
+  ASSERT_TRUE(tracker.make_fallback(stop, t));
+  const Status status = stop.check();
+  EXPECT_TRUE(status) << status.error().message;
+  EXPECT_LT((stop.at(1.0).position - state.position_map).norm(), 1e-6);
+}
+
 TEST(FallbackStops, AreNotMadeOfWhatIsNotKnown) {
   Tracker tracker = Tracker::create(without_map()).value();
   FallbackStop stop{.step_s = 0.5, .states = {}};
@@ -186,7 +220,8 @@ TEST(FallbackStops, AreNotMadeOfWhatIsNotKnown) {
   EXPECT_FALSE(tracker.make_fallback(stop, kSecond)) << "odometry is lost";
 }
 
-// Started again beside a vehicle that moves: whoever flies it knows where to, and goes on.
+// A tracker that is started beside a moving vehicle does not know its path. The vehicle's fallback
+// stop does.
 TEST(ATrackerThatStarts, LeavesAMovingVehicleAloneUntilItRests) {
   Tracker tracker = Tracker::create(without_map()).value();
   RigidBodyState state;

@@ -13,7 +13,8 @@ namespace goshawk::tracker {
 namespace {
 
 constexpr double kFastest_m_s = 2.0;
-// The margin, and what a stop from a turn cuts of the curve: it ends on it, and no map is there.
+// More than the margin of 0.05 m: after a pause the vehicle is stopped where it is, and from a turn
+// that stop returns to the path across the corner. There is no map that forbids it here.
 constexpr double kCutCorner_m = 0.15;
 
 struct Seen {

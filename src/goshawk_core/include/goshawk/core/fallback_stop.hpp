@@ -24,8 +24,8 @@ struct FallbackStop {
   /// @pre check() ok; from_s <= to_s
   double nearest_time_s(const Vec3& position_map, double from_s, double to_s) const;
 
-  /// @return invalid_input: no state or more than kMostStates, a number that is not finite, a step
-  ///         outside of (0, 10] s, a last state that is not at rest
+  /// @return invalid_input: no state or more than kMostStates, a state beyond 1e6 m, m/s or m/s^2
+  ///         or not finite, a step outside of 1e-6 to 10 s, a last state that is not at rest
   Status check() const;
 };
 
