@@ -102,7 +102,10 @@ struct Measured {
 /// A guard whose vehicle hovers, or flies a plan, at the start of each plan.
 class Bench {
  public:
-  explicit Bench(const std::shared_ptr<const VoxelGrid>& map) { guard_.set_map(map, now_); }
+  explicit Bench(const std::shared_ptr<const VoxelGrid>& map) {
+    guard_.set_map(map, now_);
+    guard_.on_heading(0.0);
+  }
 
   void hover(const Vec3& p_map) {
     now_ += 100 * kSecond;
@@ -130,6 +133,7 @@ class Bench {
       now_ += kSecond / 5;
       const auto state = guard_.flown().at(now_);
       if (!state || state->velocity.norm() < 0.1) return;
+      guard_.on_tracking({guard::Tracking::Mode::follows, state->position}, now_);
       const Vec3 off(random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), 0.0);
       std::vector<Vec3> left{state->position};
       std::size_t k = 0;

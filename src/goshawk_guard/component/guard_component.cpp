@@ -134,11 +134,10 @@ class GuardComponent : public Component {
     node_.subscribe<nav_msgs::msg::Odometry>(
         "odom", Qos::best_effort(),
         [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) {
-          if (has_heading_) return;
+          if (guard_.flown().newest(node_.monotonic_ns()) != nullptr) return;
           const auto vehicle = conversions::from_msg(m);
           if (!vehicle) return;  // the tracker reports bad odometry
           guard_.on_heading(yaw_of(vehicle->q_map_base));
-          has_heading_ = true;
         },
         Writers::one("odom"));
   }
@@ -255,7 +254,6 @@ class GuardComponent : public Component {
   msg::NavigatorState state_;
   Decision newest_;
   std::uint64_t told_plan_ = 0;
-  bool has_heading_ = false;
   MapSubscription map_;
 };
 

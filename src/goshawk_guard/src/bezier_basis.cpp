@@ -3,7 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "goshawk/guard/curve.hpp"
+
 namespace goshawk::guard {
+
+bool is_within_reach(const Vec3& p_map) {
+  return p_map.allFinite() && p_map.cwiseAbs().maxCoeff() <= kFarthest_m;
+}
 
 std::vector<Vec3> raised(std::span<const Vec3> points) {
   const double n = double(points.size());

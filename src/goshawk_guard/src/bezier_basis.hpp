@@ -8,6 +8,9 @@
 // Bezier curves of any degree, as lists of control points.
 namespace goshawk::guard {
 
+/// Finite, and no coordinate beyond kFarthest_m.
+bool is_within_reach(const Vec3& p_map);
+
 /// The same curve with one control point more.
 std::vector<Vec3> raised(std::span<const Vec3> points);
 

@@ -14,9 +14,7 @@ Error wrong_spline(const std::string& why) {
   return fail(ErrorCode::invalid_input, "the B-spline " + why);
 }
 
-bool is_near(const Vec3& p) {
-  return p.allFinite() && p.cwiseAbs().maxCoeff() <= kFarthest_m;
-}
+constexpr double kSameKnot_s = 1e-9;
 
 Status check_spline(const Bspline& s) {
   const std::size_t n = s.control_points_map.size();
@@ -34,15 +32,18 @@ Status check_spline(const Bspline& s) {
                     s.knots_s.size(), n, s.degree, n + std::size_t(s.degree) + 1));
   }
   for (std::size_t i = 0; i < s.knots_s.size(); ++i) {
-    if (!std::isfinite(s.knots_s[i])) return wrong_spline(fmt::format("has knot {} not finite", i));
+    if (!std::isfinite(s.knots_s[i]))
+      return wrong_spline(fmt::format("has a knot that is not finite: knot {}", i));
     if (i > 0 && s.knots_s[i] < s.knots_s[i - 1]) {
       return wrong_spline(fmt::format("has knots that fall, at knot {}", i));
     }
   }
   for (std::size_t i = 0; i < n; ++i) {
-    if (is_near(s.control_points_map[i])) continue;
+    if (is_within_reach(s.control_points_map[i])) continue;
     return wrong_spline(
-        fmt::format("has control point {} not finite or beyond {:g} m", i, kFarthest_m));
+        fmt::format("has a control point that is not finite, or beyond {:g} km: "
+                    "control point {}",
+                    1e-3 * kFarthest_m, i));
   }
   return success();
 }
@@ -71,7 +72,13 @@ Result<Curve> curve_of(const Bspline& spline) {
   Curve curve;
   for (std::size_t k = degree; k < spline.control_points_map.size(); ++k) {
     const double begin = spline.knots_s[k], end = spline.knots_s[k + 1];
-    if (!(end > begin)) continue;
+    if (!(end - begin > kSameKnot_s)) continue;
+    if (end - begin < kLeastPiece_s) {
+      return wrong_spline(
+          fmt::format("has knots {} and {} that are {:.3g} s apart: nothing, or "
+                      "{:g} s and more, can be flown",
+                      k, k + 1, end - begin, kLeastPiece_s));
+    }
     std::vector<Vec3> points;
     for (std::size_t i = 0; i <= degree; ++i) {
       std::array<double, 5> arguments;

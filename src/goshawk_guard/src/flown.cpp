@@ -25,14 +25,20 @@ const CommittedTrajectory* Flown::leg_at(std::int64_t time_ns) const {
 }
 
 void Flown::add(CommittedTrajectory committed) {
-  // As the tracker does: what waits for the same time or a later one gives way.
+  // As in the tracker, what waits for a later time gives way. What begins at the same time stays
+  // until the tracker has taken the new one, which it may refuse.
   std::erase_if(legs_, [&](const CommittedTrajectory& leg) {
     return leg.start_time_ns() > committed.start_time_ns();
   });
   legs_.push_back(std::move(committed));
 }
 
+bool Flown::tracker_is_silent(std::int64_t now_ns) const {
+  return heard_ns_ && double(now_ns - *heard_ns_) * 1e-9 > kTrackerSilent_s;
+}
+
 void Flown::hear(const Tracking& tracking, std::int64_t now_ns) {
+  heard_ns_ = now_ns;
   if (tracking.mode == Tracking::Mode::brakes || tracking.mode == Tracking::Mode::none) lose();
   if (tracking.mode != Tracking::Mode::holds) return;
   hovers_map_ = tracking.reference_map;

@@ -32,6 +32,19 @@ Result<Curve> curve_of_shape(const Plan& plan) {
   return curve_of(std::get<Samples>(plan.shape));
 }
 
+// Each is flown until the next begins.
+bool is_blocked(const FreeSpace& space, std::span<const CommittedTrajectory> legs,
+                std::int64_t now_ns) {
+  double until_s = HUGE_VAL;  // from now on
+  for (std::size_t i = legs.size(); i-- > 0;) {
+    const double start_s = double(legs[i].start_time_ns() - now_ns) * 1e-9;
+    const double from_s = std::max(0.0, -start_s), to_s = until_s - start_s;
+    if (to_s > from_s && find_obstruction(space, legs[i].flown(), from_s, to_s)) return true;
+    until_s = start_s;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::string_view to_string(PlanKind kind) {
@@ -60,13 +73,8 @@ Status Guard::reconfigure(const Config& config) {
 
 void Guard::set_map(std::shared_ptr<const VoxelGrid> grid, std::int64_t now_ns) {
   space_.set_map(std::move(grid));
-  const auto blocked = [&](const CommittedTrajectory& leg) {
-    const double from_s = double(now_ns - leg.start_time_ns()) * 1e-9;
-    if (from_s >= leg.flown().duration_s()) return false;
-    return !check_against(space_, leg, std::max(0.0, from_s)).ok();
-  };
   // The tracker has the same map and brakes by itself.
-  if (std::ranges::any_of(flown_.legs(), blocked)) flown_.lose();
+  if (is_blocked(space_, flown_.legs(), now_ns)) flown_.lose();
   move_stop(now_ns);
 }
 
@@ -94,13 +102,27 @@ void Guard::note(const Refusal& refusal, Decision& decision) {
   decision.place_map = refusal.place_map;
 }
 
-void Guard::decide(const Plan& plan, std::int64_t now_ns, Decision& decision) {
+Status Guard::check_ready(std::int64_t now_ns) const {
   if (space_.grid() == nullptr) {
-    return note({fail(ErrorCode::no_map,
-                      "no map has come to check it against; is map_server running, in this domain "
-                      "and namespace?")},
-                decision);
+    return fail(ErrorCode::no_map,
+                "no map has come to check it against; is map_server running, in this domain and "
+                "namespace?");
   }
+  if (flown_.tracker_is_silent(now_ns)) {
+    return fail(ErrorCode::stage_silent,
+                fmt::format("the tracker has said nothing for {:g} s, and it is not known where "
+                            "the vehicle will be; is the tracker alive, and does odometry come?",
+                            kTrackerSilent_s));
+  }
+  if (!yaw_rad_) {
+    return fail(ErrorCode::not_at_start,
+                "no odometry has come to take the heading from; is the vehicle alive?");
+  }
+  return success();
+}
+
+void Guard::decide(const Plan& plan, std::int64_t now_ns, Decision& decision) {
+  if (auto status = check_ready(now_ns); !status) return note({status.error()}, decision);
   if (const auto* waypoints = std::get_if<Waypoints>(&plan.shape)) {
     return fly_along(*waypoints, now_ns, decision);
   }
@@ -186,7 +208,7 @@ bool Guard::take(Or<Candidate> candidate, Verdict verdict, const Join& join, Dec
                                               .stop = *std::move(stop),
                                               .start_time_ns = join.start_ns,
                                               .map_version = space_.grid()->version,
-                                              .yaw_rad = yaw_rad_});
+                                              .yaw_rad = *yaw_rad_});
   if (!committed) return refuse_for(committed.error());
   if (auto status = check_against(space_, *committed, 0.0); !status) {
     return refuse_for(status.error());

@@ -59,7 +59,7 @@ Guard::Or<Guard::Join> Guard::join_of(const Plan& plan, const Curve& curve,
     if (passed_s > duration_s - kShortestLeft_s) {
       return Refusal{fail(ErrorCode::deadline_exceeded,
                           fmt::format("it came {:.3g} s after its start and lasts {:.3g} s: plan "
-                                      "further ahead, or are the clocks not the same?",
+                                      "further ahead; are the clocks the same?",
                                       passed_s, duration_s))};
     }
     if (passed_s < 0.0) start_ns = *plan.start_time_ns;

@@ -47,10 +47,10 @@ Status check(const Waypoints& waypoints) {
                                                       points.size(), kMostPoints));
   }
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (points[i].allFinite() && points[i].cwiseAbs().maxCoeff() <= kFarthest_m) continue;
-    return fail(
-        ErrorCode::invalid_input,
-        fmt::format("point {} of the path is not finite, or beyond {:g} m", i, kFarthest_m));
+    if (is_within_reach(points[i])) continue;
+    return fail(ErrorCode::invalid_input,
+                fmt::format("point {} of the path is not finite, or beyond {:g} km", i,
+                            1e-3 * kFarthest_m));
   }
   const auto differs = [&](const Vec3& p) { return (p - points[0]).norm() > kRepeated_m; };
   if (std::ranges::any_of(points, differs)) return success();

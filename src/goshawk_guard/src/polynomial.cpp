@@ -17,9 +17,10 @@ Error wrong_polynomial(std::size_t piece, const std::string& why) {
 }
 
 Status check_piece(const Polynomials::Piece& piece, std::size_t k) {
-  if (!(std::isfinite(piece.duration_s) && piece.duration_s > 0.0)) {
-    return wrong_polynomial(
-        k, fmt::format("lasts {:.3g} s: it must be finite and above zero", piece.duration_s));
+  if (!(std::isfinite(piece.duration_s) && piece.duration_s >= kLeastPiece_s)) {
+    return wrong_polynomial(k, fmt::format("lasts {:.3g} s: a finite time of {:g} s or more is "
+                                           "needed",
+                                           piece.duration_s, kLeastPiece_s));
   }
   for (const auto& coefficients : piece.coefficients) {
     if (coefficients.empty() || coefficients.size() > std::size_t(kMostDegree) + 1) {
@@ -100,9 +101,9 @@ Result<Curve> curve_of(const Polynomials& polynomials) {
       for (std::size_t i = 0; i < points.size(); ++i) points[i][axis] = numbers[i];
     }
     for (const Vec3& p : points) {
-      if (p.allFinite() && p.cwiseAbs().maxCoeff() <= kFarthest_m) continue;
-      return wrong_polynomial(k,
-                              fmt::format("may leave the {:g} m around the origin", kFarthest_m));
+      if (is_within_reach(p)) continue;
+      return wrong_polynomial(
+          k, fmt::format("may leave the {:g} km around the origin", 1e-3 * kFarthest_m));
     }
     if (degree == 5) {
       curve.trajectory.pieces.push_back(quintic(std::move(points), piece.duration_s));

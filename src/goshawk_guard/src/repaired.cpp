@@ -89,15 +89,15 @@ Guard::Or<Guard::Candidate> Guard::along(std::vector<Vec3> points, const Outline
   if (way.size() > kMostCorners) {
     way.resize(kMostCorners);
     cut = Refusal{fail(ErrorCode::trajectory_infeasible,
-                       fmt::format("it has {} corners and is planned to the first {}: send the "
-                                   "rest on the way",
+                       fmt::format("it has {} corners, and only the way to the first {} is "
+                                   "planned: send the rest in flight",
                                    fewer.points_map.size(), kMostCorners)),
                   way.back()};
   }
   if (auto obstacle = cut_before_obstacle(way)) cut = std::move(obstacle);
   if (cut && way.empty()) return *cut;
   if (length_of(way) < kShortestPath_m) {
-    return Refusal{fail(ErrorCode::invalid_input, "the vehicle is at its end already")};
+    return Refusal{fail(ErrorCode::deadline_exceeded, "the vehicle is at its end already")};
   }
   auto nominal =
       repair_->along(task_of(way, fewer.deviation_m + planned.deviation_m, v_most_m_s, join));
@@ -129,7 +129,7 @@ Guard::Or<Guard::Candidate> Guard::repaired(const Curve& curve, const Join& join
     if ((p - points.back()).norm() > kSamePoint_m) points.push_back(p);
   }
   if (points.size() < 2) {
-    return Refusal{fail(ErrorCode::invalid_input, "the vehicle is at its end already")};
+    return Refusal{fail(ErrorCode::deadline_exceeded, "the vehicle is at its end already")};
   }
   Outline planned = outline(curve.trajectory, join.plan_s);
   planned.deviation_m += curve.deviation_m;

@@ -17,11 +17,10 @@ Status check_samples(const std::vector<Sample>& samples) {
   }
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const Sample& s = samples[i];
-    const bool is_number = std::isfinite(s.t_s) && s.position.allFinite() &&
-                           (!s.velocity || s.velocity->allFinite()) &&
+    const bool is_number = std::isfinite(s.t_s) && (!s.velocity || s.velocity->allFinite()) &&
                            (!s.acceleration || s.acceleration->allFinite());
-    if (!is_number || s.position.cwiseAbs().maxCoeff() > kFarthest_m) {
-      return wrong(fmt::format("point {} is not finite, or beyond {:g} m", i, kFarthest_m));
+    if (!is_number || !is_within_reach(s.position)) {
+      return wrong(fmt::format("point {} is not finite, or beyond {:g} km", i, 1e-3 * kFarthest_m));
     }
     if (i > 0 && !(s.t_s > samples[i - 1].t_s)) {
       return wrong(fmt::format("time does not grow at point {}: {:.6g} s after {:.6g} s", i, s.t_s,
@@ -34,11 +33,15 @@ Status check_samples(const std::vector<Sample>& samples) {
 /// Samples with time between them, the first and the last among them. @param off_m how far what is
 /// left out is from the polyline through what stays
 std::vector<Sample> thinned(const std::vector<Sample>& samples, double& off_m) {
+  // Stamps of messages are cut to nanoseconds.
+  constexpr double kStep_s = kShortestPiece_s * (1.0 - 1e-3);
   std::vector<Sample> kept{samples.front()};
   std::size_t last = 0;
   for (std::size_t i = 1; i < samples.size(); ++i) {
     const bool is_end = i + 1 == samples.size();
-    if (samples[i].t_s - samples[last].t_s < kShortestPiece_s * (1.0 - 1e-9) && !is_end) continue;
+    const bool is_close = samples[i].t_s - samples[last].t_s < kStep_s ||
+                          samples.back().t_s - samples[i].t_s < kLeastPiece_s;
+    if (is_close && !is_end) continue;
     for (std::size_t j = last + 1; j < i; ++j) {
       off_m = std::max(off_m, distance_to_segment(samples[j].position, samples[last].position,
                                                   samples[i].position));
@@ -119,10 +122,16 @@ Result<Curve> curve_of(const Samples& plan) {
         moves ? BezierPiece::between(states[i], states[i + 1], step_s)
               : quintic({a, a + step_s / 3.0 * slopes[i], b - step_s / 3.0 * slopes[i + 1], b},
                         step_s));
-    off_m = std::max(off_m, hull_distance(curve.trajectory.pieces.back(), a, b));
+    const BezierPiece& piece = curve.trajectory.pieces.back();
+    for (int k = 0; k < 6; ++k) {
+      if (is_within_reach(piece.control_points.col(k))) continue;
+      return fail(ErrorCode::invalid_input,
+                  fmt::format("the velocities lead beyond {:g} km, {:.3g} s after the start",
+                              1e-3 * kFarthest_m, samples[i].t_s - samples.front().t_s));
+    }
+    off_m = std::max(off_m, hull_distance(piece, a, b));
   }
   curve.deviation_m = left_out_m + off_m;
-  if (auto status = curve.trajectory.check(); !status) return status.error();
   return curve;
 }
 

@@ -36,6 +36,23 @@ TEST(BadPlans, BeforeTheTrackerSpokeAreRefused) {
   EXPECT_EQ(guard.on_plan(straight_plan(kHome, kThere, 9), 0).reason.code, ErrorCode::not_at_start);
 }
 
+TEST(BadPlans, BeforeOdometryCameAreRefused) {
+  Guard guard({}, make_repair(), 1);
+  guard.set_map(map_of({}), 0);
+  guard.on_tracking({Tracking::Mode::holds, kHome}, 0);
+  const auto decision = guard.on_plan(path_plan({kHome, kThere}), 0);
+  EXPECT_EQ(decision.reason.code, ErrorCode::not_at_start);
+  EXPECT_THAT(decision.reason.message, HasSubstr("heading"));
+  guard.on_heading(kYaw_rad);
+  EXPECT_EQ(guard.on_plan(path_plan({kHome, kThere}), 0).verdict, Verdict::passed);
+}
+
+TEST(BadPlans, WhoseEndTheVehicleHasReachedAreRefused) {
+  Harness h;
+  expect_refused(h, path_plan({kHome - Vec3(0.5, 0, 0), kHome}), ErrorCode::deadline_exceeded,
+                 "at its end already");
+}
+
 TEST(BadPlans, OfNothingOrNotOfNumbersAreRefused) {
   Harness h;
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -81,7 +98,9 @@ TEST(BadPlans, OfAnotherTimeAreRefused) {
 
 TEST(BadPlans, ThatLastHardlyOrForEverAreRefused) {
   Harness h;
-  expect_refused(h, straight_plan(kHome, kThere, 1e-5), ErrorCode::invalid_input, "it lasts");
+  expect_refused(h, straight_plan(kHome, kThere, 1e-3), ErrorCode::invalid_input, "s apart");
+  expect_refused(h, timed_plan({{0, kHome}, {1e-4, kThere}}), ErrorCode::invalid_input,
+                 "it lasts 0.0001 s");
   expect_refused(h, straight_plan(kHome, kThere, 1e5), ErrorCode::invalid_input, "it lasts");
 }
 

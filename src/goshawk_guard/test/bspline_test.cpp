@@ -80,6 +80,21 @@ TEST(BsplineCurve, SkipsSpansThatLastNoTime) {
   EXPECT_LT((curve.trajectory.sample(2.0).position - Vec3(5, 1, 1)).norm(), 1e-12);
 }
 
+TEST(BsplineCurve, TakesKnotsThatAreEqualUpToRoundingAsEqual) {
+  Random random(4);
+  Bspline s = made(random, 3, 8, true);
+  s.knots_s[5] = s.knots_s[4];
+  const auto equal = curve_of(s).value();
+  s.knots_s[5] = s.knots_s[4] + 1e-13;
+  const auto rounded = curve_of(s).value();
+  ASSERT_EQ(rounded.trajectory.pieces.size(), equal.trajectory.pieces.size());
+  for (std::size_t k = 0; k < equal.trajectory.pieces.size(); ++k) {
+    const Points3<6> off =
+        equal.trajectory.pieces[k].control_points - rounded.trajectory.pieces[k].control_points;
+    EXPECT_LT(off.cwiseAbs().maxCoeff(), 1e-9);
+  }
+}
+
 TEST(BsplineCurve, IsRefusedWithTheReasonIfItIsNone) {
   Random random(3);
   const Bspline good = made(random, 3, 8, true);
@@ -94,8 +109,10 @@ TEST(BsplineCurve, IsRefusedWithTheReasonIfItIsNone) {
   EXPECT_THAT(refusal([](Bspline& s) { s.degree = 6; }), HasSubstr("degree 6"));
   EXPECT_THAT(refusal([](Bspline& s) { s.knots_s.pop_back(); }), HasSubstr("11 knots"));
   EXPECT_THAT(refusal([](Bspline& s) { s.control_points_map.clear(); }), HasSubstr("0 control"));
-  EXPECT_THAT(refusal([](Bspline& s) { s.knots_s[4] = NAN; }), HasSubstr("knot 4 not finite"));
+  EXPECT_THAT(refusal([](Bspline& s) { s.knots_s[4] = NAN; }), HasSubstr("not finite: knot 4"));
   EXPECT_THAT(refusal([](Bspline& s) { s.knots_s[5] = -9; }), HasSubstr("at knot 5"));
+  EXPECT_THAT(refusal([](Bspline& s) { s.knots_s[5] = s.knots_s[4] + 1e-5; }),
+              HasSubstr("knots 4 and 5 that are 1e-05 s apart"));
   EXPECT_THAT(refusal([](Bspline& s) { s.control_points_map[2].y() = NAN; }),
               HasSubstr("control point 2"));
   EXPECT_THAT(refusal([](Bspline& s) { s.control_points_map[2].y() = 1e9; }),

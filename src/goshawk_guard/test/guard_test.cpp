@@ -23,6 +23,7 @@ TEST(Passing, ASplineThatIsSafeIsFlownAsItIs) {
   EXPECT_FALSE(h.last().stop());
   EXPECT_EQ(h.last().start_time_ns(), h.now + kSecond / 20);
   EXPECT_EQ(h.last().map_version(), 7u);
+  EXPECT_EQ(h.last().yaw_rad(), kYaw_rad);
   EXPECT_NEAR(h.last().nominal().duration_s(), 16.0, 1e-9);
   expect_safe(h, h.last());
 }
@@ -224,6 +225,49 @@ TEST(Obstacles, ThatAppearOnTheWayAreBrakedForByTheTrackerAndJoinedAfterwards) {
   const auto decision = h.send(straight_plan(rest, kFar, 16.0));
   EXPECT_TRUE(decision.trimmed);
   expect_safe(h, h.last());
+}
+
+TEST(Obstacles, OnWhatANewerPlanReplacesDoNotCount) {
+  Harness h;
+  h.send(straight_plan(kHome, kFar, 16.0));
+  h.pass(3.0);
+  const FlatState then = h.ahead(1.0);
+  const FlatState end{.position = then.position + Vec3(2, 0, 0)};
+  const BezierPiece piece = BezierPiece::between(then, end, 4.0);
+  Samples samples;
+  for (int i = 0; i <= 8; ++i) {
+    const FlatState s = piece.sample(0.5 * i);
+    samples.samples.push_back({0.5 * i, s.position, s.velocity, s.acceleration});
+  }
+  const auto shorter =
+      h.send({.kind = PlanKind::trajectory, .start_time_ns = h.now + kSecond, .shape = samples});
+  ASSERT_EQ(shorter.verdict, Verdict::passed) << shorter.reason.message;
+  h.map({.wall_x_m = end.position.x() + 2.0, .version = 8});  // beyond the end of the newer one
+  EXPECT_TRUE(h.guard.flown().at(h.now)) << "before the newer one begins";
+  h.pass(2.0);
+  h.map({.wall_x_m = end.position.x() + 2.0, .version = 9});
+  EXPECT_TRUE(h.guard.flown().at(h.now)) << "while it is flown";
+  h.map({.wall_x_m = h.place().x() + 0.6, .version = 10});
+  EXPECT_FALSE(h.guard.flown().at(h.now)) << "on what is flown they do";
+}
+
+TEST(Silence, OfTheTrackerEndsAllPlansUntilItSpeaksAgain) {
+  Harness h;
+  h.send(straight_plan(kHome, kFar, 16.0));
+  h.pass(2.0);
+  for (int i = 0; i < 100; ++i) {  // without a word of the tracker
+    h.now += kSecond / 10;
+    h.guard.on_plan(straight_plan(h.place(), kFar, 16.0), h.now);
+  }
+  const auto commits = h.guard.take_commits();
+  EXPECT_LE(commits.size(), 20u) << "none later than 2 s";
+  const auto refused = h.guard.on_plan(straight_plan(h.place(), kFar, 16.0), h.now);
+  EXPECT_EQ(refused.verdict, Verdict::refused);
+  EXPECT_EQ(refused.reason.code, ErrorCode::stage_silent);
+  const Vec3 rest(4.1, 0.1, 2.1);
+  h.guard.on_tracking({Tracking::Mode::holds, rest}, h.now);
+  EXPECT_EQ(h.send(straight_plan(rest, kFar, 16.0)).verdict, Verdict::passed);
+  EXPECT_LT((h.last().flown().sample(0.0).position - rest).norm(), 1e-6);
 }
 
 TEST(Silence, OfAPlannerThatRepeatsItselfIsToldOnce) {

@@ -33,6 +33,7 @@ std::shared_ptr<const VoxelGrid> map_of(const MapSpec& spec) {
 Harness::Harness(const MapSpec& spec, const Config& config)
     : guard(config, make_repair(), 1), grid(map_of(spec)) {
   guard.set_map(grid, now);
+  guard.on_heading(kYaw_rad);
   guard.on_tracking({Tracking::Mode::holds, kHome}, now);
 }
 

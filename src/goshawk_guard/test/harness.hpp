@@ -11,6 +11,7 @@ namespace goshawk::guard {
 
 inline constexpr std::int64_t kSecond = 1'000'000'000;
 inline const Vec3 kHome(1.1, 0.1, 2.1);
+inline constexpr double kYaw_rad = 0.5;
 
 /// 20 x 10 x 4 m from (0, -5, 0) in voxels of 0.2 m, obstacles grown by 0.2 m.
 struct MapSpec {

@@ -89,6 +89,12 @@ TEST(PolynomialCurve, IsRefusedWithTheReasonIfItIsNone) {
   EXPECT_THAT(refusal([](Polynomials& p) { p.pieces[1].duration_s = 0; }), HasSubstr("piece 1"));
   EXPECT_THAT(refusal([](Polynomials& p) { p.pieces[1].duration_s = -1; }), HasSubstr("piece 1"));
   EXPECT_THAT(refusal([](Polynomials& p) { p.pieces[0].duration_s = NAN; }), HasSubstr("piece 0"));
+  // So short that the square of it is zero.
+  EXPECT_THAT(refusal([](Polynomials& p) {
+                p.pieces[1] = {.duration_s = 1e-200, .coefficients = {}};
+                for (auto& c : p.pieces[1].coefficients) c.assign(10, 1.0);
+              }),
+              HasSubstr("piece 1 lasts 1e-200 s"));
   EXPECT_THAT(refusal([](Polynomials& p) { p.pieces[0].coefficients[1].clear(); }),
               HasSubstr("0 coefficients"));
   EXPECT_THAT(refusal([](Polynomials& p) { p.pieces[0].coefficients[1].resize(11); }),

@@ -109,6 +109,22 @@ TEST(SampledCurve, LeavesOutSamplesThatComeFasterThanTheVehicleTurns) {
   EXPECT_NEAR(curve.trajectory.duration_s(), 2.0 * std::numbers::pi, 1e-9);
 }
 
+// As planners send them: steps cut to nanoseconds, and the end a rounding after the last step.
+TEST(SampledCurve, KeepsSamplesAt20HzThoughTheirStampsAreCutToNanoseconds) {
+  Samples plan;
+  for (int i = 0; i <= 40; ++i) {
+    plan.samples.push_back(
+        {.t_s = std::floor(i * 0.05 * 1e9 - 0.5) * 1e-9, .position = {0.05 * i, 0, 1}});
+  }
+  plan.samples.front().t_s = 0.0;
+  plan.samples.push_back({.t_s = 2.0 + 1e-9, .position = {2.0, 0, 1}});
+  const auto curve = curve_of(plan).value();
+  ASSERT_EQ(curve.trajectory.pieces.size(), 40u);
+  for (const BezierPiece& piece : curve.trajectory.pieces)
+    EXPECT_NEAR(piece.duration_s, 0.05, 1e-6);
+  EXPECT_LT(curve.trajectory.peaks().speed_m_s, 1.5) << "no jump at the end";
+}
+
 TEST(SampledCurve, IsRefusedWithTheReasonIfItIsNone) {
   const auto refusal = [&](auto&& spoil) {
     Samples plan = circle(10, false);
@@ -123,6 +139,10 @@ TEST(SampledCurve, IsRefusedWithTheReasonIfItIsNone) {
   EXPECT_THAT(refusal([](All& s) { s[4].position.x() = NAN; }), HasSubstr("point 4"));
   EXPECT_THAT(refusal([](All& s) { s[4].position.x() = 1e7; }), HasSubstr("point 4"));
   EXPECT_THAT(refusal([](All& s) { s[4].velocity = Vec3(NAN, 0, 0); }), HasSubstr("point 4"));
+  EXPECT_THAT(refusal([](All& s) {
+                for (Sample& sample : s) sample.velocity = Vec3(1e200, 0, 0);
+              }),
+              HasSubstr("the velocities lead beyond 1000 km"));
   EXPECT_THAT(refusal([](All& s) { std::swap(s[4].t_s, s[5].t_s); }), HasSubstr("at point 5"));
   EXPECT_THAT(refusal([](All& s) { s[5].t_s = s[4].t_s; }), HasSubstr("at point 5"));
   EXPECT_THAT(refusal([](All& s) {

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "goshawk/core/inflation.hpp"
+#include "goshawk/core/vehicle.hpp"
 
 namespace goshawk::guarded {
 namespace {
@@ -147,6 +148,9 @@ void GuardLab::step() {
 
 void GuardLab::control(std::int64_t now_ns) {
   const auto measured = vehicle_.measure();
+  if (guard_.flown().newest(now_ns) == nullptr) {
+    guard_.on_heading(yaw_of(measured.state.q_map_base));
+  }
   tracker_.heard_navigator(now_ns);
   if (const auto command = tracker_.step(measured.state, measured.time_ns, now_ns)) {
     if (auto status = vehicle_.command(*command); !status) {

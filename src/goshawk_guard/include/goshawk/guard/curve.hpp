@@ -15,22 +15,23 @@ struct Curve {
 
 /// Exact, up to rounding: each span by knot insertion (blossoming; Ramshaw, "Blossoms are polar
 /// forms", CAGD 1989), then its degree is raised.
-/// @return invalid_input: degree outside of 2 to 5, sizes that disagree, knots that fall, too many
-///   pieces, a number that is not finite or beyond kFarthest_m
+/// @return invalid_input: degree outside of 2 to 5, sizes that disagree, knots that fall or are
+///   closer than kLeastPiece_s but not equal, too many pieces, a number that is not finite or
+///   beyond kFarthest_m
 Result<Curve> curve_of(const Bspline& spline);
 
 /// Exact up to the fifth degree, by change of basis. Beyond it quintics with the same states at
 /// their ends are fitted to ever shorter parts, until the hull of the difference proves
 /// kPolynomialWithin_m.
-/// @return invalid_input, also for a degree above 9; trajectory_infeasible: a polynomial that no
-///   quintics come so near to
+/// @return invalid_input, also for a degree above 9 or a piece shorter than kLeastPiece_s;
+///   trajectory_infeasible: a polynomial that no quintics come so near to
 Result<Curve> curve_of(const Polynomials& polynomials);
 
 /// Through the samples, at their times; samples closer in time than kShortestPiece_s are left out,
 /// and bounded. With velocities for all: quintics with these (accelerations, if missing, from the
 /// differences of the velocities). Without: the cubic spline with continuous acceleration that ends
 /// at rest. The deviation is from the polyline through the samples.
-/// @return invalid_input: fewer than two, times that do not grow, not finite
+/// @return invalid_input: fewer than two, times that do not grow, not finite or beyond kFarthest_m
 Result<Curve> curve_of(const Samples& samples);
 
 /// @return invalid_input: no two different points, too many, or one that is not finite
@@ -59,7 +60,8 @@ Trajectory remainder(const Trajectory& trajectory, double t_s);
 inline constexpr std::size_t kMostPieces = 1000;    // of a plan
 inline constexpr std::size_t kMostPoints = 20'000;  // of a path or a list of samples
 inline constexpr double kPolynomialWithin_m = 1e-3;
-inline constexpr double kShortestPiece_s = 0.05;
-inline constexpr double kFarthest_m = 1e6;  // no plan leads beyond
+inline constexpr double kLeastPiece_s = 1e-3;     // of a plan: of shorter ones rounding is fast
+inline constexpr double kShortestPiece_s = 0.05;  // of samples
+inline constexpr double kFarthest_m = 1e6;        // no plan leads beyond
 
 }  // namespace goshawk::guard

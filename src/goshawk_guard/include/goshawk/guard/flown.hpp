@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <optional>
-#include <string_view>
 #include <vector>
 
 #include "goshawk/core/committed_trajectory.hpp"
@@ -28,6 +27,8 @@ class Flown {
   /// The tracker brakes by itself: nothing is joined until it holds again.
   void lose();
 
+  /// The tracker has spoken, but not for kTrackerSilent_s: what it flies is not known.
+  bool tracker_is_silent(std::int64_t now_ns) const;
   /// The state that the vehicle is to have then; nothing: it is not known.
   std::optional<FlatState> at(std::int64_t time_ns) const;
   /// From then on nothing moves it.
@@ -45,6 +46,9 @@ class Flown {
   std::vector<CommittedTrajectory> legs_;  // by start
   std::uint64_t accepted_ = 0;             // the newest that the tracker has taken
   std::optional<Vec3> hovers_map_;         // where it holds
+  std::optional<std::int64_t> heard_ns_;   // when it last spoke
 };
+
+inline constexpr double kTrackerSilent_s = 2.0;
 
 }  // namespace goshawk::guard

@@ -63,7 +63,7 @@ class Guard {
 
   /// @pre grid->check() ok
   void set_map(std::shared_ptr<const VoxelGrid> grid, std::int64_t now_ns);
-  /// The heading that the vehicle keeps: as it was when the vehicle last began to fly.
+  /// The heading that the next commit from rest keeps. Before the first no plan is flown.
   void on_heading(double yaw_rad) { yaw_rad_ = yaw_rad; }
   void on_tracking(const Tracking& tracking, std::int64_t now_ns) { flown_.hear(tracking, now_ns); }
   /// The tracker's answer to a commit, or that it has lost it.
@@ -118,6 +118,7 @@ class Guard {
                      const Join& join) const;
   std::optional<Refusal> cut_before_obstacle(std::vector<Vec3>& points) const;
   // guard.cpp
+  Status check_ready(std::int64_t now_ns) const;
   void decide(const Plan& plan, std::int64_t now_ns, Decision& decision);
   void fly_along(const Waypoints& waypoints, std::int64_t now_ns, Decision& decision);
   void fly(const Plan& plan, const Curve& curve, std::int64_t now_ns, Decision& decision);
@@ -133,7 +134,7 @@ class Guard {
   std::vector<Commit> commits_;
   std::uint64_t next_id_;
   std::uint64_t plans_ = 0;
-  double yaw_rad_ = 0.0;
+  std::optional<double> yaw_rad_;
   PlanKind flown_kind_ = PlanKind::path;
   std::optional<std::int64_t> heard_ns_;  // when the last plan came
   bool repeats_ = false;                  // plans come one after another
