@@ -68,7 +68,7 @@ class Reader {
 };
 
 Error broken() {
-  return fail(ErrorCode::io_failed, "what it says is not understood");
+  return fail(ErrorCode::io_failed, "its content is invalid");
 }
 
 }  // namespace
