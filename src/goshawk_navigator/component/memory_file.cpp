@@ -68,7 +68,7 @@ class Reader {
 };
 
 Error broken() {
-  return fail(ErrorCode::io_failed, "its content is not valid");
+  return fail(ErrorCode::io_failed, "its content is invalid");
 }
 
 }  // namespace

@@ -68,9 +68,9 @@ std::uint8_t reporting_stage(const msg::StageReport& m) {
   return decides ? m.stage() : std::uint8_t{0};
 }
 
-/// goal_pose, odom, trajectory, stage_report, tracking_state, map/voxels -> plan_request,
-/// committed_trajectory, navigator_state, navigator_alive. Counts on the monotonic clock; messages
-/// carry the wall clock's.
+/// goal_pose, goal, operator_command, odom, trajectory, stage_report, tracking_state, map/voxels ->
+/// plan_request, committed_trajectory, navigator_state, navigator_alive, operator_answer. Counts on
+/// the monotonic clock; messages carry the wall clock's.
 class NavigatorComponent : public Component {
  public:
   explicit NavigatorComponent(Node& node)

@@ -15,7 +15,8 @@ namespace {
 
 // A failure is believed after this time: a good answer may still come.
 constexpr double kDoubt_s = 0.1;
-// Failures of trajectories in flight that lie so far apart are not added up.
+// Failures of trajectories in flight are not added up if one comes so long after the next attempt
+// that followed the one before.
 constexpr double kApart_s = 1.0;
 
 // About one request; the sentence of its end counts them all.
@@ -148,7 +149,8 @@ void Navigator::on_tracker_report(std::uint64_t id, const Error& outcome, std::i
   // gave way to an even later stop leaves that.
   if (schedule_.drop_later_stop(id)) return say_what_is_flown(now_ns);
   const bool flew = std::ranges::any_of(schedule_.legs(), &Leg::accepted);
-  if (flew && now_ns - pursuit_.lost_ns > to_ns(kApart_s)) pursuit_.failures = 0;
+  const double apart_s = pause_s(pursuit_.failures) + kApart_s;
+  if (flew && now_ns - pursuit_.lost_ns > to_ns(apart_s)) pursuit_.failures = 0;
   pursuit_.lost_ns = now_ns;
   left_ = Left{*leg, now_ns, !pursuit_.open};
   if (leg->accepted) {
@@ -179,7 +181,7 @@ void Navigator::pursue_again(const Error& why, std::int64_t now_ns) {
   drop_open();
   if (++pursuit_.failures >= config_.max_attempts) return give_up(why, now_ns);
   reopen(0, now_ns);
-  pursuit_.retry_ns = now_ns + to_ns(kRetryDelay_s);
+  pursuit_.retry_ns = now_ns + to_ns(pause_s(pursuit_.failures));
   enter(schedule_.moves(now_ns) ? State::flying : State::planning, now_ns,
         {why.code, why.message + "; planning again"});
 }

@@ -46,8 +46,7 @@ Commitment Navigator::from_rest(CertifiedTrajectory way, std::int64_t now_ns) {
 
 // It leads to no goal: plans begin at its end.
 void Navigator::commit_own(CommittedTrajectory committed) {
-  orders_.push_back(Commit{committed, 0});
-  schedule_.add({.committed = std::move(committed), .brakes = true});
+  brake_by(std::move(committed));
   pursuit_.not_before_ns = schedule_.end_ns();
 }
 

@@ -10,7 +10,6 @@
 #include "times.hpp"
 
 namespace goshawk::navigator {
-namespace {}  // namespace
 
 std::string_view to_string(State state) {
   constexpr std::array<std::string_view, 6> names{"idle",    "planning", "flying",

@@ -11,11 +11,13 @@
 namespace goshawk::navigator {
 namespace {
 
-constexpr double kHoldAgain_s = 0.1;  // no way to rest was found: again after this time
-
 Error no_odometry() {
   return fail(ErrorCode::tracking_lost,
               "no odometry comes, so it is not known where the vehicle is");
+}
+
+Vec3 end_of(const CommittedTrajectory& committed) {
+  return committed.flown().sample(committed.flown().duration_s()).position;
 }
 
 }  // namespace
@@ -35,7 +37,7 @@ void Navigator::hold(std::int64_t now_ns) {
 // A curve may be at its limits where it is tried first.
 void Navigator::hold_on(std::int64_t now_ns) {
   if (state_ != State::held || now_ns < brake_again_ns_) return;
-  brake_again_ns_ = now_ns + to_ns(kHoldAgain_s);
+  brake_again_ns_ = now_ns + to_ns(kBrakeAgain_s);
   if (schedule_.moves(now_ns) && !brakes()) brake(now_ns);
 }
 
@@ -74,8 +76,8 @@ Result<Descent> Navigator::land(std::int64_t now_ns) {
   if (map() == nullptr) {
     return fail(ErrorCode::no_map, "no map has come, so the way down cannot be checked");
   }
-  if (!brakes()) brake(now_ns);
-  const Vec3 from_map = rest_place(now_ns);
+  auto braked = brakes() ? std::nullopt : way_to_rest(now_ns);
+  const Vec3 from_map = braked ? end_of(*braked) : rest_place(now_ns);
   const auto above = locate(*map(), from_map, Endpoint::start);
   if (!above) return above.error();
   if (!space_.is_free(*above)) {
@@ -83,6 +85,7 @@ Result<Descent> Navigator::land(std::int64_t now_ns) {
                 fmt::format("the vehicle's own place {} was not seen free: climb first",
                             to_text(from_map)));
   }
+  if (braked) brake_by(*std::move(braked));
   const Descent descent = lowest_below(from_map, *above);
   const Goal goal{descent.end_map, yaw_of(vehicle_.q_map_base), config_.operator_speed_m_s};
   if (auto status = on_goal(goal, now_ns); !status) return status.error();

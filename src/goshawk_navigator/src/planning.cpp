@@ -19,8 +19,6 @@ constexpr double kSwitchSlack_s = 0.02;
 // Of the time at which a plan may begin.
 constexpr double kSearchStep_s = 0.02;
 
-// No way to rest was found on what is flown: again after this time.
-constexpr double kBrakeAgain_s = 0.1;
 // A stage may have planned in a map that is older than the newest by so much.
 constexpr double kMapDelay_s = 1.0;
 // A tracker that was heard is started again within this time.
@@ -282,26 +280,36 @@ void Navigator::give_up(const Error& reason, std::int64_t now_ns) {
   enter(State::failed, now_ns, reason);
 }
 
-// Commits a way to rest on what is flown. @return whether there is one
-bool Navigator::brake(std::int64_t now_ns) {
+// On what is flown; nothing if there is none, or what is flown is one already.
+std::optional<CommittedTrajectory> Navigator::way_to_rest(std::int64_t now_ns) {
   const std::int64_t begin_ns = now_ns + to_ns(config_.commit_lead_s);
   const Leg* leg = schedule_.at(begin_ns);
-  if (leg == nullptr || leg->brakes || begin_ns >= leg->end_ns()) return false;
+  if (leg == nullptr || leg->brakes || begin_ns >= leg->end_ns()) return {};
   const double from_s = double(begin_ns - leg->start_ns()) * 1e-9;
   auto way = brake_along(leg->committed, from_s, [this](const Trajectory& trajectory) {
     return map() == nullptr || !find_obstruction(space_, trajectory);
   });
-  if (!way) return false;
+  if (!way) return {};
   const double yaw_rad = leg->committed.yaw_at(from_s + way->duration_s() / 2.0);
   auto committed = CommittedTrajectory::make({.id = next_id_++,
                                               .nominal = *std::move(way),
                                               .start_time_ns = begin_ns,
                                               .map_version = leg->committed.map_version(),
                                               .yaw_rad = yaw_rad});
-  if (!committed) return false;
-  orders_.push_back(Commit{*committed, 0});
-  schedule_.add({.committed = *std::move(committed), .brakes = true});
-  return true;
+  if (!committed) return {};
+  return *std::move(committed);
+}
+
+void Navigator::brake_by(CommittedTrajectory way) {
+  orders_.push_back(Commit{way, 0});
+  schedule_.add({.committed = std::move(way), .brakes = true});
+}
+
+// Commits a way to rest on what is flown. @return whether there is one
+bool Navigator::brake(std::int64_t now_ns) {
+  auto way = way_to_rest(now_ns);
+  if (way) brake_by(*std::move(way));
+  return way.has_value();
 }
 
 // However planning goes, the vehicle does not fly on to a goal that was revoked.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -11,5 +12,16 @@ inline std::int64_t to_ns(double s) {
 
 // Failures that pass by themselves are tried again after this time.
 inline constexpr double kRetryDelay_s = 0.2;
+
+// No way to rest was found on what is flown: again after this time.
+inline constexpr double kBrakeAgain_s = 0.1;
+
+/// [s] after so many trajectories in a row that the tracker did not fly: longer each time, so that
+/// five attempts span 4.6 s. A tracker that has not heard yet that the navigator's clock was set
+/// refuses all of them for a while.
+inline double pause_s(int failures) {
+  constexpr double kGrowth = 3.0, kLongest_s = 2.0;
+  return std::min(kLongest_s, kRetryDelay_s * std::pow(kGrowth, failures - 1));
+}
 
 }  // namespace goshawk::navigator

@@ -116,6 +116,42 @@ TEST(Navigator, PlansAgainFromRestIfTheTrackerRefuses) {
   EXPECT_EQ(h.navigator.state(), State::arrived);
 }
 
+// A tracker that does not know yet that the navigator's clock was set.
+TEST(Navigator, OutlivesATrackerThatRefusesEverythingForSomeSeconds) {
+  Harness h;
+  h.goal(kGoal);
+  const std::int64_t refuses_until = h.now + 4 * kSecond;
+  for (std::size_t answered = 0; h.now < refuses_until; h.pass(0.02)) {
+    if (h.plans.size() == answered) continue;
+    answered = h.plans.size();
+    h.answer();
+    h.flown.clear();
+    h.tracker_says(h.commits.back().id(), {ErrorCode::deadline_exceeded, "begins in the past"});
+  }
+  ASSERT_EQ(h.last().state, State::planning);
+  const std::size_t refused = h.plans.size();
+  for (int i = 0; i < 200 && h.plans.size() == refused; ++i) h.pass(0.02);
+  h.answer();
+  h.tracker_says(h.commits.back().id(), ok());
+  h.pass(5.0);
+  EXPECT_EQ(h.last().state, State::arrived);
+}
+
+TEST(Navigator, GivesUpIfTheTrackerRefusesEveryAttempt) {
+  Harness h;
+  h.goal(kGoal);
+  for (std::size_t answered = 0; h.last().state != State::failed; h.pass(0.02)) {
+    if (h.plans.size() == answered) continue;
+    answered = h.plans.size();
+    h.answer();
+    h.flown.clear();
+    h.tracker_says(h.commits.back().id(), {ErrorCode::not_at_start, "0.9 m away"});
+    ASSERT_LE(h.plans.size(), std::size_t(Config{}.max_attempts));
+  }
+  EXPECT_EQ(h.plans.size(), std::size_t(Config{}.max_attempts));
+  EXPECT_EQ(h.last().reason.code, ErrorCode::not_at_start);
+}
+
 TEST(Navigator, WithoutOdometryNamesWhatIsMissing) {
   Harness h;
   h.odometry_comes = false;

@@ -204,6 +204,25 @@ TEST(Operator, LandingNeedsAMapOdometryAndAPlaceThatIsFree) {
   EXPECT_EQ(h.navigator.state(), State::idle);
 }
 
+// Where it would come to rest the map is occupied or unseen for planning, not for flying.
+TEST(Operator, ALandingThatIsRefusedInFlightChangesNothing) {
+  Harness h = in_fast_flight();
+  VoxelGrid grid = free_map(6);
+  grid.raw = BitGrid(grid.geometry.size, true, false);
+  grid.grown.set({103, 100, 101}, true);  // in the reserve of plans: 3 m < x < 4 m
+  grid.unknown_is_occupied = false;
+  grid.known = BitGrid(grid.geometry.size, false, true);
+  h.map(std::move(grid));
+  ASSERT_EQ(h.commits.size(), 1u);
+  EXPECT_EQ(h.navigator.land(h.now).code(), ErrorCode::start_occupied);
+  h.take();
+  EXPECT_EQ(h.commits.size(), 1u);
+  EXPECT_EQ(h.last().state, State::flying);
+  h.pass(4.0);
+  EXPECT_EQ(h.last().state, State::arrived);
+  EXPECT_LT((h.vehicle().position - kGoal).norm(), 1e-6);
+}
+
 TEST(Operator, TakeoffClimbsStraightUpByAHeight) {
   Harness h;
   const auto place = h.navigator.take_off(1.5, h.now);

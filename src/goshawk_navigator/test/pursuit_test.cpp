@@ -227,7 +227,7 @@ TEST(Pursuit, LossesThatLieApartAreNotAddedUpThoseOfOneMomentAre) {
   for (int k = 0; k < 3 && h.last().state == State::planning; ++k) {
     h.answer();
     h.tracker_says(h.commits.back().id(), {ErrorCode::not_at_start, "0.1 m away"});
-    h.pass(0.3);
+    h.pass(1.0);  // the next attempt
   }
   EXPECT_EQ(h.last().state, State::failed);
 }

@@ -109,7 +109,8 @@ class Navigator {
   void hold(std::int64_t now_ns);
   /// Pursues the held goal again. @return invalid_input if nothing is held
   Status resume_held(std::int64_t now_ns);
-  /// Brakes, and makes the lowest place below a goal that the map shows free all the way down.
+  /// Brakes, and makes the lowest place below a goal that the map shows free all the way down. A
+  /// refused landing changes nothing.
   /// @return the place; tracking_lost: no odometry; no_map; start_occupied, start_unknown or
   ///   start_outside: the map does not show the vehicle's own place free
   Result<Descent> land(std::int64_t now_ns);
@@ -221,6 +222,8 @@ class Navigator {
   void plan_again(const Error& reason, double delay_s, std::int64_t now_ns);
   void reopen(std::int64_t not_before_ns, std::int64_t now_ns);
   void give_up(const Error& reason, std::int64_t now_ns);
+  std::optional<CommittedTrajectory> way_to_rest(std::int64_t now_ns);
+  void brake_by(CommittedTrajectory way);
   bool brake(std::int64_t now_ns);
   bool brakes() const { return schedule_.last() != nullptr && schedule_.last()->brakes; }
   void check_revoked(std::int64_t now_ns);
