@@ -79,6 +79,15 @@ Status check_flown(const std::vector<FlownSample>& flown) {
   return success();
 }
 
+/// From its start to its end, as far as it is known.
+std::vector<Vec3> line_of(const Leg& leg) {
+  if (!leg.waypoints_map.empty()) return leg.waypoints_map;
+  if (!leg.raw_path_map.empty()) return leg.raw_path_map;
+  if (leg.trajectory.pieces.empty()) return {};
+  return {leg.trajectory.sample(0.0).position,
+          leg.trajectory.sample(leg.trajectory.duration_s()).position};
+}
+
 bool empty(const Leg& leg) {
   return leg.raw_path_map.empty() && leg.waypoints_map.empty() && leg.trajectory.pieces.empty() &&
          leg.corridor.empty();
@@ -104,12 +113,30 @@ Status Flight::check() const {
   if (auto status = check_grid(obstacles, "obstacles"); !status) return status;
   if (auto status = check_grid(grown, "grown obstacles"); !status) return status;
   if (auto status = check_flown(flown); !status) return status;
+  if (!usable(goals_map)) return wrong("a goal is not finite or beyond 1e6 m");
   bool anything = !flown.empty() || obstacles != nullptr || grown != nullptr;
   for (std::size_t i = 0; i < legs.size(); ++i) {
     if (auto status = check_leg(legs[i], fmt::format("leg {}", i)); !status) return status;
     anything = anything || !empty(legs[i]);
   }
   return anything ? success() : Status(wrong("there is no map, no path and no track in it"));
+}
+
+std::vector<Vec3> Flight::stops_map() const {
+  std::vector<Vec3> stops;
+  if (!goals_map.empty() && !flown.empty()) stops = {flown.front().position_map};
+  for (const Leg& leg : legs) {
+    const std::vector<Vec3> line = line_of(leg);
+    if (line.empty()) continue;
+    if (stops.empty()) stops.push_back(line.front());
+    if (goals_map.empty()) stops.push_back(line.back());
+  }
+  if (!stops.empty()) {
+    stops.insert(stops.end(), goals_map.begin(), goals_map.end());
+  } else if (!flown.empty()) {
+    stops = {flown.front().position_map, flown.back().position_map};
+  }
+  return stops;
 }
 
 std::optional<FlatState> Flight::planned_at(double t_s) const {

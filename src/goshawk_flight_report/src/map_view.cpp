@@ -59,24 +59,6 @@ double fastest_m_s(const Flight& flight) {
   return fastest;
 }
 
-/// Start and goals: of the legs, or of the flown track if there are none.
-std::vector<Vec3> stops_of(const Flight& flight) {
-  std::vector<Vec3> stops;
-  for (const Leg& leg : flight.legs) {
-    std::vector<Vec3> line = leg.waypoints_map.empty() ? leg.raw_path_map : leg.waypoints_map;
-    if (line.empty()) {
-      for (const FlatState& s : sampled(leg.trajectory, 1)) line.push_back(s.position);
-    }
-    if (line.empty()) continue;
-    if (stops.empty()) stops.push_back(line.front());
-    stops.push_back(line.back());
-  }
-  if (stops.empty() && !flight.flown.empty()) {
-    stops = {flight.flown.front().position_map, flight.flown.back().position_map};
-  }
-  return stops;
-}
-
 class MapPicture {
  public:
   MapPicture(const Flight& flight, const Layout& layout)
@@ -150,7 +132,7 @@ class MapPicture {
   }
 
   void ends() {
-    const auto stops = stops_of(flight_);
+    const auto stops = flight_.stops_map();
     const bool tour = stops.size() > 2;
     for (std::size_t i = stops.size(); i-- > 0;) {
       const std::string name = i == 0 ? "S" : tour ? fmt::to_string(i) : "G";

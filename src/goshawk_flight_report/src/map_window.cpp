@@ -32,6 +32,7 @@ std::vector<Vec3> places_of(const Flight& flight) {
     points.insert(points.end(), leg.waypoints_map.begin(), leg.waypoints_map.end());
     append(points, leg.trajectory);
   }
+  points.insert(points.end(), flight.goals_map.begin(), flight.goals_map.end());
   return points;
 }
 

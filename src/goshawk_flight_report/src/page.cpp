@@ -150,6 +150,7 @@ Result<std::string> flight_json(const Flight& flight, const std::string& summary
       {"body_radius", flight.body_radius_m},
       {"limits", {{"v_max", flight.limits.v_max_m_s}, {"a_max", flight.limits.a_max_m_s2}}},
       {"legs", legs},
+      {"stops", to_json(flight.stops_map())},
       {"flown", to_json(flight.flown)},
       {"obstacles", to_json(flight.obstacles)},
       {"grown", to_json(flight.grown)},

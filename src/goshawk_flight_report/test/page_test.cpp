@@ -39,7 +39,8 @@ TEST_F(Page, HoldsTheFlightInPlaceOfTheMark) {
   ASSERT_TRUE(write_flight_page(flight, page(), file(), "{\"verdict\":\"<safe>\"}"));
   EXPECT_EQ(text(),
             "<before>{\"title\":\"A \\\"flight\\\" \\u003c/script>\",\"body_radius\":0.15,"
-            "\"limits\":{\"v_max\":2.0,\"a_max\":2.0},\"legs\":[],\"flown\":{\"t\":[0.0,0.02],"
+            "\"limits\":{\"v_max\":2.0,\"a_max\":2.0},\"legs\":[],"
+            "\"stops\":[[1.0,2.0,3.0],[1.25,2.0,3.0]],\"flown\":{\"t\":[0.0,0.02],"
             "\"p\":[1.0,2.0,3.0,1.25,2.0,3.0],\"v\":[0.5,0.0,0.0,0.5,0.0,0.0],"
             "\"q\":[1.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0]},"
             "\"obstacles\":null,\"grown\":null,\"summary\":{\"verdict\":\"\\u003csafe>\"}}<after>");

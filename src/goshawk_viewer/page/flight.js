@@ -23,7 +23,7 @@ Goshawk.FlightPage = class extends Goshawk.Page {
   }
 
   framed() {
-    const points = this.track.map(s => s.p);
+    const points = [...this.track.map(s => s.p), ...this.data.stops];
     for (const leg of this.legs) points.push(...leg.waypoints, ...leg.raw);
     return points;
   }
@@ -44,9 +44,7 @@ Goshawk.FlightPage = class extends Goshawk.Page {
       $('cut-row').hidden = true;
     }
     view.drawMaps();
-    const ends = this.legs.flatMap(l => l.waypoints.length ? [l.waypoints[l.waypoints.length - 1]] : []);
-    const start = this.legs.length && this.legs[0].waypoints.length ? [this.legs[0].waypoints[0]] : [];
-    view.setGoals([...start, ...ends]);
+    view.setGoals(data.stops);
     view.frame(this.framed());
     for (const [name, have] of [['grown', data.grown], ['flown', this.track.length],
                                 ['vehicle', this.track.length || this.legs.length]]) {

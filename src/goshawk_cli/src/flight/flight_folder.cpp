@@ -37,7 +37,8 @@ std::vector<flight_check::Sample> flown_track(const FlightRecorder& record) {
 }
 
 Status write_flight(const std::string& folder, const Json& summary, const FlightRecorder& record,
-                    const LoadedMap& map, double body_radius_m) {
+                    const std::vector<Vec3>& goals_map, const LoadedMap& map,
+                    double body_radius_m) {
   std::ofstream json(folder + "/flight.json");
   json << summary.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
   if (!json.flush()) {
@@ -51,6 +52,7 @@ Status write_flight(const std::string& folder, const Json& summary, const Flight
   flight.obstacles = &raw;
   flight.grown = map.grown.get();
   flight.body_radius_m = body_radius_m;
+  flight.goals_map = goals_map;
   const std::int64_t origin_ns = record.flown().front().stamp_ns;
   for (const auto& committed : record.committed()) {
     flight.legs.push_back(make_leg(committed, record, origin_ns));

@@ -44,6 +44,7 @@ struct Flight {
   const VoxelGrid* grown = nullptr;      // not owned: grown by the vehicle, or nothing
   std::vector<Leg> legs;  // in the order in which they were committed
   std::vector<FlownSample> flown;
+  std::vector<Vec3> goals_map = {};  // [m] as they were sent; empty: the ends of the legs
   Limits limits;
   double body_radius_m = 0.15;  // [m] obstacles this close in height to the flight are drawn dark
 
@@ -51,6 +52,10 @@ struct Flight {
   /// beyond 1e6 m; time of the flown track that goes backwards; a body without a radius; a grid, a
   /// polytope, a trajectory or limits that fail their own check
   Status check() const;
+
+  /// The start and the goals [m], frame `map`. A vehicle that plans anew in flight has more legs
+  /// than goals. Empty if neither a leg nor the track has a place.
+  std::vector<Vec3> stops_map() const;
 
   /// Where the vehicle should be at t_s: on the newest leg that had begun, at that leg's end once
   /// its time is over. Nothing before the first leg, or if no leg has a trajectory.
