@@ -7,7 +7,7 @@ Understands the subset that idl/ uses: modules, structs, sequence<T>, arrays, st
 constants, @extensibility(FINAL). Anything else stops it with file and line, so that the tools never
 miss a field. The comment behind a field or constant is kept.
 
-Constants follow ROS 2's IDL: `const octet STATE_IDLE = 0;` in a module `<Struct>_Constants` before
+Constants follow ROS 2's IDL: `const uint8 STATE_IDLE = 0;` in a module `<Struct>_Constants` before
 the struct. A constant belongs to the field that its name begins with: `state`.
 """
 
@@ -56,7 +56,7 @@ class Struct:
 def parse_constant(code, comment):
     match = CONSTANT.match(code)
     if not match:
-        raise IdlError("is not a constant like `const octet STATE_IDLE = 0;`: " + code)
+        raise IdlError("is not a constant like `const uint8 STATE_IDLE = 0;`: " + code)
     return Constant(match["name"], match["type"], int(match["value"]), comment)
 
 

@@ -14,15 +14,15 @@ GOOD = """
 module demo {
   module msg {
     module Light_Constants {
-      const octet COLOUR_RED = 0;     // stop
-      const octet COLOUR_GREEN = 2;
-      const octet COLOUR_MIX_NONE = 1;
+      const uint8 COLOUR_RED = 0;     // stop
+      const uint8 COLOUR_GREEN = 2;
+      const uint8 COLOUR_MIX_NONE = 1;
     };
     // A light.
     @extensibility(FINAL)
     struct Light {
-      octet colour;         // what it shows
-      octet colour_mix;     // how it mixes
+      uint8 colour;         // what it shows
+      uint8 colour_mix;     // how it mixes
       sequence<double> at;  // [s]
     };
   };
@@ -55,7 +55,7 @@ class Constants(unittest.TestCase):
         for words, old, new in [
                 ("begins with the name of no field", "COLOUR_RED", "SHAPE_ROUND"),
                 ("repeats the value 0", "COLOUR_GREEN = 2", "COLOUR_GREEN = 0"),
-                ("its field colour is not", "octet colour;", "double colour;"),
+                ("its field colour is not", "uint8 colour;", "double colour;"),
                 ("is not a constant like", "COLOUR_RED = 0", "COLOUR_RED = -1"),
                 ("is not a constant like", "COLOUR_RED = 0", "colour_red = 0"),
                 ("no struct demo/msg/Lamp", "Light_Constants", "Lamp_Constants"),

@@ -20,7 +20,8 @@ static_assert(std::uint8_t(StageRole::vehicle) == stage::STAGE_VEHICLE);
 static_assert(std::uint8_t(StageRole::flight_check) == stage::STAGE_FLIGHT_CHECK);
 static_assert(std::uint8_t(StageRole::viewer) == stage::STAGE_VIEWER &&
               std::uint8_t(StageRole::mission) == stage::STAGE_MISSION &&
-              std::uint8_t(StageRole::guard) == stage::STAGE_GUARD);
+              std::uint8_t(StageRole::guard) == stage::STAGE_GUARD &&
+              std::uint8_t(StageRole::obstacle_tracker) == stage::STAGE_OBSTACLE_TRACKER);
 
 }  // namespace
 
@@ -29,7 +30,7 @@ std::uint8_t to_msg(StageRole role) {
 }
 
 StageRole stage_role_of(std::uint8_t value) {
-  return value <= stage::STAGE_GUARD ? StageRole(value) : StageRole::other;
+  return value <= stage::STAGE_OBSTACLE_TRACKER ? StageRole(value) : StageRole::other;
 }
 
 ErrorCode error_code_of(std::string_view name) {

@@ -8,7 +8,8 @@ namespace goshawk::conversions {
 namespace {
 
 TEST(StageRoles, ComeBackAsTheyWereSent) {
-  for (int value = 0; value <= goshawk_msgs::msg::StageReport_Constants::STAGE_GUARD; ++value) {
+  for (int value = 0; value <= goshawk_msgs::msg::StageReport_Constants::STAGE_OBSTACLE_TRACKER;
+       ++value) {
     EXPECT_EQ(to_msg(stage_role_of(std::uint8_t(value))), value);
   }
 }

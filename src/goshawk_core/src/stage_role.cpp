@@ -6,10 +6,10 @@
 namespace goshawk {
 namespace {
 
-constexpr std::array<std::string_view, 12> kWords{
-    "other",     "map_server", "path_search", "corridor_builder", "trajectory_optimizer",
-    "navigator", "tracker",    "vehicle",     "flight_check",     "viewer",
-    "mission",   "guard"};
+constexpr std::array<std::string_view, 13> kWords{
+    "other",     "map_server", "path_search",     "corridor_builder", "trajectory_optimizer",
+    "navigator", "tracker",    "vehicle",         "flight_check",     "viewer",
+    "mission",   "guard",      "obstacle_tracker"};
 
 }  // namespace
 

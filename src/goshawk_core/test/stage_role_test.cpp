@@ -6,7 +6,7 @@ namespace goshawk {
 namespace {
 
 TEST(StageRole, HasAWordThatLeadsBackToIt) {
-  for (int k = 0; k <= int(StageRole::guard); ++k) {
+  for (int k = 0; k <= int(StageRole::obstacle_tracker); ++k) {
     EXPECT_EQ(stage_role_of(to_string(StageRole(k))), StageRole(k));
   }
   EXPECT_EQ(to_string(StageRole::path_search), "path_search");

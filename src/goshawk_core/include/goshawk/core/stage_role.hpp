@@ -20,7 +20,8 @@ enum class StageRole : std::uint8_t {
   flight_check,
   viewer,
   mission,
-  guard
+  guard,
+  obstacle_tracker
 };
 
 /// "path_search"
