@@ -263,7 +263,8 @@ Result<Json> fly(const FlyOptions& options, const Preparation& p, const Say& say
   if (outcome.refusal) return *outcome.refusal;
   guard.keep();
   const Json summary = summary_json(outcome, flight.record(), *folder);
-  if (auto written = write_flight(*folder, summary, flight.record(), p.map, p.config.map.radius_m);
+  if (auto written = write_flight(*folder, summary, flight.record(), p.tour.goals_map, p.map,
+                                  p.config.map.radius_m);
       !written) {
     return written.error();
   }
