@@ -222,6 +222,7 @@ void Navigator::check_legs(std::int64_t now_ns) {
     const double from_s = double(from_ns - leg.start_ns()) * 1e-9;
     const double to_s = double(until_ns - leg.start_ns()) * 1e-9;
     if (!find_obstruction(space_, leg.committed.flown(), from_s, to_s)) continue;
+    if (&leg == schedule_.last() && stop_sooner(now_ns)) return;
     return blocked(check_against(space_, leg.committed, from_s).error(), now_ns);
   }
 }

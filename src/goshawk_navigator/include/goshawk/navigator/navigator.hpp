@@ -249,6 +249,8 @@ class Navigator {
   bool approaches() const;
   Status add_stop(Commitment& candidate, bool from_rest) const;
   void move_stop(std::int64_t now_ns);
+  bool stop_sooner(std::int64_t now_ns);
+  void commit_stop(std::optional<StopPart> stop);
   void improve(std::int64_t now_ns);
   double improvement_lead_s() const;
   void take_improvement(Commitment candidate, std::uint64_t number, std::int64_t now_ns);
