@@ -9,14 +9,15 @@
 namespace goshawk::league {
 namespace {
 
-closed_loop::Setup racer() {
+closed_loop::Setup racer_setup() {
   closed_loop::Setup setup;
   EXPECT_TRUE(apply_file(RACER, setup));
   return setup;
 }
 
 TEST(LiveCase, IsToldByItsNumberAlone) {
-  const auto one = make_live_case(12, racer()).value(), same = make_live_case(12, racer()).value();
+  const auto one = make_live_case(12, racer_setup()).value(),
+             same = make_live_case(12, racer_setup()).value();
   EXPECT_EQ(one.kind, same.kind);
   EXPECT_EQ(one.scene.goal, same.scene.goal);
   ASSERT_EQ(one.scene.solids.size(), same.scene.solids.size());
@@ -28,7 +29,7 @@ TEST(LiveCase, NumbersDrawEveryKindOfWorldSensorAndPace) {
   std::set<std::string> kinds;
   std::set<double> ranges, noises, views, speeds;
   for (std::uint64_t number = 0; number < 40; ++number) {
-    const auto live = make_live_case(number, racer());
+    const auto live = make_live_case(number, racer_setup());
     if (!live) continue;
     kinds.insert(live->kind);
     ranges.insert(live->options.range_m);
@@ -44,7 +45,7 @@ TEST(LiveCase, NumbersDrawEveryKindOfWorldSensorAndPace) {
 }
 
 TEST(LiveCase, AGoalBehindAClosedWallCannotBeReached) {
-  Scene scene = make_live_case(3, racer()).value().scene;
+  Scene scene = make_live_case(3, racer_setup()).value().scene;
   scene.solids.resize(5);  // the walls around and the ground
   EXPECT_TRUE(can_be_reached(scene).value());
   const double x = 0.5 * (scene.start.x() + scene.goal.x());
@@ -57,7 +58,7 @@ TEST(LiveCase, AGoalBehindAClosedWallCannotBeReached) {
 TEST(LiveCase, FlightsThroughWorldsThatNobodyKnowsTouchNothingAndArriveWhereASearchDoes) {
   int reachable = 0, arrived = 0;
   for (std::uint64_t number = 0; number < 4; ++number) {
-    auto live = make_live_case(number, racer());
+    auto live = make_live_case(number, racer_setup());
     ASSERT_TRUE(live) << live.error().message;
     live->options.latency_s = 0.005;
     const auto outcome = fly(live->scene, live->options).value();

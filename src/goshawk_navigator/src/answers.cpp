@@ -197,7 +197,7 @@ void Navigator::on_map(std::shared_ptr<const VoxelGrid> grid, std::int64_t now_n
   }
   check_legs(now_ns);
   move_stop(now_ns);
-  improve(now_ns);
+  improve_by_new_map(now_ns);
 }
 
 // A goal that failed because of the map is taken up again when the map has changed since.

@@ -147,8 +147,21 @@ void Navigator::improve(std::int64_t now_ns) {
   open_->improves = true;
 }
 
+// At once, and not when the next plan is due. A plan that is awaited, and was asked for before this
+// map came, is superseded; but not twice in a row, so that maps that come faster than plans do not
+// keep all of them from being made.
+void Navigator::improve_by_new_map(std::int64_t now_ns) {
+  if (open_ && open_->improves && !pending_ && !superseded_by_map_) {
+    drop_open();
+    superseded_by_map_ = true;
+  }
+  if (!open_) improve_ns_ = now_ns;
+  improve(now_ns);
+}
+
 void Navigator::take_improvement(Commitment candidate, std::uint64_t number, std::int64_t now_ns) {
   const Open asked = *std::exchange(open_, {});
+  superseded_by_map_ = false;
   latency_s_ =
       std::clamp(double(now_ns - asked.asked_ns) * 1e-9, 0.9 * latency_s_, config_.replan_lead_s);
   const PlanRequest& request = asked.request;

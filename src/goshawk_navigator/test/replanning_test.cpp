@@ -228,6 +228,21 @@ TEST(Replanning, AnObstacleFoundOnTheWayMovesTheStopSoonerAndAPlanIsAskedForAtOn
   EXPECT_TRUE(h.plans.back().start_time_ns) << "in flight";
 }
 
+TEST(Replanning, ANewMapSupersedesThePlanThatIsAwaitedButNotTwiceInARow) {
+  Harness h = approaching();
+  await_request(h);
+  const PlanRequest before = h.plans.back();
+  h.map(seen_below(7, 7));
+  const PlanRequest asked = h.plans.back();
+  EXPECT_EQ(asked.supersedes, before.id) << "at once";
+  h.map(seen_below(7, 8));
+  EXPECT_EQ(h.plans.back().id, asked.id) << "it is waited for";
+  h.fails(ErrorCode::no_path, StageRole::path_search);
+  h.pass(0.2);
+  h.map(seen_below(7, 9));
+  EXPECT_EQ(h.plans.back().stamp_ns, h.now);
+}
+
 /// Commits a plan whose path goes on for 8 m beyond its end.
 Harness within_its_horizon() {
   Harness h;
@@ -246,7 +261,7 @@ TEST(Replanning, APlanThatEndsAtItsHorizonIsPlannedOnBeforeItBrakes) {
   ASSERT_GE(h.plans.size(), 2u);
   EXPECT_EQ(h.plans.back().goal.position, kFar) << "the request is for the goal itself";
   ASSERT_TRUE(h.plans.back().start_time_ns);
-  h.answer(4.0);
+  h.answer(4.4);
   ASSERT_EQ(h.commits.size(), 2u);
   h.pass(6.0);
   EXPECT_EQ(h.last().state, State::arrived);

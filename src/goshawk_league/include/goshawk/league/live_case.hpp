@@ -10,10 +10,10 @@ namespace goshawk::league {
 /// One flight of a campaign: a world that the vehicle does not know, a sensor, limits and a goal.
 struct LiveCase {
   std::uint64_t number = 0;
-  std::string kind;      // of the world, as worlds::world_kinds()
-  double density = 0.0;  // as worlds::WorldSpec::density
-  Scene scene;
-  Options options;
+  std::string kind = {};  // of the world, as worlds::world_kinds()
+  double density = 0.0;   // as worlds::WorldSpec::density
+  Scene scene = {};
+  Options options = {};
 };
 
 /// Draws all of it from the number. @param vehicle the vehicle and its stages
