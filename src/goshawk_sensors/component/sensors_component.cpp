@@ -60,7 +60,7 @@ class SensorsComponent : public Component {
  public:
   explicit SensorsComponent(Node& node)
       : node_(node),
-        config_(node.parameters<Config>()),
+        config_(node.parameters<Config>([this](const Config& c) { return reconfigure(c); })),
         sensor_(make_sensor(config_)),
         form_(CloudForm::of(config_)),
         track_(kLongestGap_s, kKept_s + 1.0 / config_.sensor.pattern.rate_hz),
@@ -76,7 +76,8 @@ class SensorsComponent : public Component {
     }
     node.subscribe<nav_msgs::msg::Odometry>(
         "odom", Qos::best_effort(10),
-        [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) { on_odometry(m); });
+        [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) { on_odometry(m); },
+        Writers::one("odom"));
     node.every(kLookAgain_s, [this] {
       if (!world_) look_for_world();
     });
@@ -90,6 +91,12 @@ class SensorsComponent : public Component {
     std::optional<PointCloud2> cloud;
     std::optional<Image> image;
   };
+
+  Status reconfigure(const Config& config) {
+    if (auto status = check_change(config_, config); !status) return status;
+    config_ = config;
+    return success();
+  }
 
   void look_for_world() {
     auto world = read_world(config_);
@@ -123,7 +130,12 @@ class SensorsComponent : public Component {
     }
   }
 
-  void take(const Scan& scan) {
+  void take(const Scan& seen) {
+    if (config_.covered) {
+      dark_ = seen;
+      for (Return& r : dark_.returns) r = {.offset_ns = r.offset_ns, .ring = r.ring};
+    }
+    const Scan& scan = config_.covered ? dark_ : seen;
     Waiting& waiting = waiting_.emplace_back();
     waiting.due_ns = scan.end_ns + std::llround(1e9 * config_.sensor.latency_s);
     if (image_) fill_msg(scan, config_, waiting.image.emplace());
@@ -152,6 +164,7 @@ class SensorsComponent : public Component {
   std::optional<Publisher<CameraInfo>> info_;
   std::unique_ptr<VoxelWorld> world_;
   std::deque<Waiting> waiting_;
+  Scan dark_;  // of a covered lens
 };
 
 }  // namespace
