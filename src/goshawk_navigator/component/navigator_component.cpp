@@ -39,11 +39,14 @@ std::uint8_t to_msg(State state) {
 /// What the navigator plans by itself, for those who read who planned.
 constexpr const char* kBrakeName = "navigator_brake";
 
-double moved_m(const msg::StageReport& m) {
+Shortfall shortfall_of(const msg::StageReport& m) {
+  Shortfall shortfall;
   for (const auto& counter : m.counters()) {
-    if (counter.name() == "goal_moved_m") return counter.value();
+    if (!(counter.value() >= 0.0) || !std::isfinite(counter.value())) continue;
+    if (counter.name() == "goal_moved_m") shortfall.goal_moved_m = counter.value();
+    if (counter.name() == "beyond_m") shortfall.beyond_m = counter.value();
   }
-  return 0.0;
+  return shortfall;
 }
 
 /// The same trajectory, by another clock.
@@ -209,7 +212,7 @@ class NavigatorComponent : public Component {
   void on_report(const msg::StageReport& m) {
     const Error outcome{conversions::error_code_of(m.code()), m.message()};
     navigator_.on_report(m.request_id(), conversions::stage_role_of(m.stage()), outcome,
-                         node_.monotonic_ns(), moved_m(m));
+                         node_.monotonic_ns(), shortfall_of(m));
     carry_out();
   }
 
