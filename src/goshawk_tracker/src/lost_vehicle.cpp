@@ -104,7 +104,7 @@ Status Tracker::check_control(std::int64_t now_ns) const {
       return success();
     case Control::autopilot:
       return not_flown(
-          "its autopilot has control; either none has reached it yet, or it is in another mode");
+          "its autopilot has control: none has reached it yet, or it is in another mode");
     case Control::pilot:
       return not_flown("its pilot has control");
     case Control::nobody:
