@@ -43,7 +43,7 @@ STAGES = {
 }
 # They are no stages: they report nothing.
 PEOPLE = {
-    "viewer": {"reads": ALL, "writes": ["goal_pose", "operator_command"]},
+    "viewer": {"reads": ALL, "writes": ["goal_pose", "operator_command", "why"]},
     "recorder": {"reads": ALL, "writes": []},
     "operator": {"reads": ALL, "writes": ["goal_pose", "goal", "mission", "operator_command",
                                           "octomap_in", "/parameter_request"]},

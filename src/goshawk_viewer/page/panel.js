@@ -4,10 +4,14 @@ const $ = id => document.getElementById(id);
 
 Goshawk.layerNames = [
   ['obstacles', 'obstacles', t => t.high], ['above', 'above the cut', t => t.ghost, 'hollow'],
-  ['grown', 'too close for the vehicle', t => t.grown], ['raw', 'voxel path', t => t.raw, 'thin'],
+  ['grown', 'too close for the vehicle', t => t.grown], ['unseen', 'border of the unseen', t => t.unseen],
+  ['changed', 'changed just now', () => 0xff731a], ['cloud', 'cloud', t => t.cloud],
+  ['window', 'window of the map', t => t.ghost, 'hollow'], ['raw', 'voxel path', t => t.raw, 'thin'],
   ['pruned', 'pruned path', t => t.pruned, 'thin'], ['corridor', 'corridor', t => t.corridor],
-  ['trajectory', 'trajectory, by speed', null], ['flown', 'flown track', t => t.flown, 'thin'],
-  ['vehicle', 'vehicle', t => t.accent], ['goals', 'start and goals', t => t.goal, 'halves']];
+  ['trajectory', 'trajectory, by speed', null], ['nominal', 'nominal part', t => t.nominal, 'thin'],
+  ['stop', 'stop part', t => t.stop, 'thin'], ['flown', 'flown track', t => t.flown, 'thin'],
+  ['movers', 'moving obstacles', t => t.mover], ['vehicle', 'vehicle', t => t.accent], ['goals', 'start and goals', t => t.goal, 'halves'],
+  ['refused', 'what was refused', t => t.accent]];
 
 Goshawk.Page = class {
   constructor() {
@@ -48,7 +52,8 @@ Goshawk.Page = class {
       box.checked = !this.view || this.view.layers[name].visible;
       box.addEventListener('change', () => {
         this.view.layers[name].visible = box.checked;
-        if (['obstacles', 'above', 'grown'].includes(name)) this.view.drawMaps();  // made when shown
+        if (Goshawk.MapLayers.names.includes(name)) this.view.drawMaps();  // made when shown
+        this.onLayer(name, box.checked);
         this.view.redraw = true;
       });
       const swatch = document.createElement('i');
@@ -60,6 +65,17 @@ Goshawk.Page = class {
         `rgb(${Goshawk.speedColor(s).map(c => Math.round(255 * c)).join(',')})`);
     this.gradient = `linear-gradient(90deg, ${stops.join(',')})`;
     $('speed-scale').querySelector('i').style.background = this.gradient;
+  }
+
+  // A layer was shown or hidden.
+  onLayer() {}
+
+  // Layers without content are not in the legend. @param have {name: whether there is something}
+  showLayers(have) {
+    for (const [name, there] of Object.entries(have)) {
+      $('layer-' + name).parentElement.hidden = !there;
+      if (!there) this.view.layers[name].visible = false;
+    }
   }
 
   bindButtons() {

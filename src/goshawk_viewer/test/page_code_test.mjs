@@ -5,7 +5,7 @@ import assert from 'node:assert/strict';
 
 const [messages, page] = process.argv.slice(2);
 const {Goshawk, V3} = new Function(
-    ['geometry.js', 'theme.js', 'octomap.js', 'sight.js', 'cdr.js', 'glance.js'].map(
+    ['geometry.js', 'theme.js', 'world.js', 'parts.js', 'octomap.js', 'sight.js', 'cdr.js', 'messages.js', 'glance.js'].map(
         name => readFileSync(`${page}/${name}`, 'utf8')).join('\n') + '\nreturn {Goshawk, V3};')();
 
 const kBox = {normals: [1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1],
@@ -115,6 +115,162 @@ test('the state at one glance leaves out what is not known', () => {
                    ['mode', 'position', 'altitude', 'speed']);
   assert.ok(Goshawk.glance({mode: 'idle', pose: {p: [1, 2, 3]}, speed: 0, obstacle: Infinity, mapAge: null,
                             battery: null}).some(([, value]) => value === 'over 3 m'));
+});
+
+function randomVoxels(size, share, seed) {
+  const voxels = new Goshawk.Voxels([1, 2, 3], 0.5, size);
+  const random = () => (seed = (seed * 16807) % 2147483647) / 2147483647;
+  for (let k = 0; k < voxels.cells.length; ++k) voxels.cells[k] = random() < share ? 1 : 0;
+  return voxels;
+}
+const facesAsText = ({cell, face, ao}) => Array.from(face, (f, k) =>
+    [...cell.subarray(3 * k, 3 * k + 3), f, ...ao.subarray(4 * k, 4 * k + 4)].join()).sort();
+
+test('the faces of all chunks are the faces of the whole', () => {
+  const voxels = randomVoxels([70, 40, 37], 0.4, 5);
+  const chunks = Goshawk.allChunks(voxels.size);
+  assert.equal(chunks.length, 2 * 2 * 2);
+  const parts = chunks.flatMap(key => facesAsText(
+      Goshawk.voxelFaces(voxels, 3, 35, Goshawk.chunkBox(key, voxels.size))));
+  assert.deepEqual(parts.sort(), facesAsText(Goshawk.voxelFaces(voxels, 3, 35)));
+});
+
+test('a changed voxel marks every chunk whose faces or shades it changes', () => {
+  const voxels = randomVoxels([70, 40, 37], 0.4, 9);
+  for (const [x, y, z] of [[10, 10, 10], [63, 31, 31], [64, 32, 32], [0, 31, 5], [63, 0, 36]]) {
+    const faces = () => Goshawk.allChunks(voxels.size).map(key => facesAsText(
+        Goshawk.voxelFaces(voxels, 0, 37, Goshawk.chunkBox(key, voxels.size))).join());
+    const before = faces(), changes = new Goshawk.MapChanges();
+    voxels.cells[x + 70 * (y + 40 * z)] ^= 1;
+    changes.add(x, y, z, 'blocked');
+    faces().forEach((text, k) => {
+      const key = Goshawk.allChunks(voxels.size)[k];
+      assert.ok(text === before[k] || changes.dirty.has(key), `${[x, y, z]} in chunk ${key}`);
+    });
+    assert.deepEqual(changes.places, [[[x, y, z], 'blocked']]);
+  }
+});
+
+test('the border of the unseen lies between every unknown voxel and each free one beside it', () => {
+  const known = randomVoxels([9, 8, 7], 0.5, 3), obstacles = randomVoxels([9, 8, 7], 0.3, 4);
+  const at = (x, y, z) => x + 9 * (y + 8 * z);
+  const inside = (x, y, z) => x >= 0 && y >= 0 && z >= 0 && x < 9 && y < 8 && z < 6;  // z: the cut
+  let count = 0;
+  for (let z = 0; z < 6; ++z) for (let y = 0; y < 8; ++y) for (let x = 0; x < 9; ++x) {
+    if (known.cells[at(x, y, z)]) continue;
+    for (const [i, j, k] of [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]]) {
+      if (inside(x + i, y + j, z + k) && known.cells[at(x + i, y + j, z + k)] &&
+          !obstacles.cells[at(x + i, y + j, z + k)]) ++count;
+    }
+  }
+  assert.equal(Goshawk.frontierFaces(known, obstacles, 0, 6, [[0, 0, 0], known.size]).face.length, count);
+});
+
+test('a map that grew is the same at a moment, from whichever side one comes', () => {
+  // Runs of clear and set voxels of a row of ten, LEB128, base64.
+  const runs = (...lengths) => Buffer.from(lengths).toString('base64');
+  const moments = [[0.5, runs(2, 1, 7), runs(0, 5, 5)], [1, runs(10), runs(5, 5)], [2, runs(2, 1, 4, 1, 2), runs(10)]]
+      .map(([t, obstacles, known], k) => ({t, obstacles, known, window: [k, 0, 0, 10 - k, 1, 1]}));
+  const growth = new Goshawk.Growth({origin: [0, 0, 0], resolution: 0.5, size: [10, 1, 1], moments});
+  const changes = new Goshawk.MapChanges();
+  const look = t => {
+    growth.seek(t, changes);
+    return [growth.obstacles, growth.known].map(v => v.cells.join(''));
+  };
+  const expected = {'-1': ['0010000000', '1111100000'], 0.7: ['0010000000', '1111100000'],
+                    1: ['0010000000', '1111111111'], 9: ['0000000100', '1111111111']};
+  for (const t of [-1, 0.7, 1, 9, 1, -1, 9, 0.7, 9]) assert.deepEqual(look(t), expected[t], `at ${t} s`);
+  assert.equal(growth.seek(8, changes), false, 'nothing changed');
+  assert.deepEqual(growth.window(), {origin: [1, 0, 0], size: [8, 1, 1], resolution: 0.5});
+  changes.clear();
+  look(1);
+  look(9);
+  assert.deepEqual(changes.places, [[[2, 0, 0], 'freed'], [[7, 0, 0], 'blocked']]);
+});
+
+test('bricks change the voxels that they say, and tell which', () => {
+  const voxels = randomVoxels([70, 9, 9], 0.5, 11), before = voxels.cells.slice();
+  const words = new Uint8Array(512).fill(255), told = [];
+  voxels.setBrick({word_x: 1, brick_y: 0, brick_z: 1}, words, (x, y, z, value) => told.push([x, y, z, value]));
+  let changed = 0;
+  voxels.cells.forEach((cell, at) => {
+    const [x, y, z] = [at % 70, Math.floor(at / 70) % 9, Math.floor(at / 630)];
+    const inBrick = x >= 64 && y < 8 && z >= 8;
+    assert.equal(cell, inBrick ? 1 : before[at]);
+    changed += cell !== before[at];
+  });
+  assert.equal(told.length, changed);
+  assert.ok(told.every(([x, y, z, value]) => value === 1 && before[x + 70 * (y + 9 * z)] === 0));
+});
+
+const straight = (length, duration) => new Goshawk.Trajectory(
+    [{duration, points: [0, 1, 2, 3, 4, 5].map(k => [length * k / 5, 0, 1])}]);
+
+test('a commit parts where its stop part begins, and rests where that ends', () => {
+  const stop = {duration: 1, points: [2, 2.2, 2.4, 2.5, 2.5, 2.5].map(x => [x, 0, 1])};
+  const flown = new Goshawk.Trajectory([{duration: 2, points: [0, 0.4, 0.8, 1.2, 1.6, 2].map(x => [x, 0, 1])}, stop]);
+  const leg = {start: 10, trajectory: flown, stopAfter: 2, nominal: straight(5, 5)};
+  const parts = Goshawk.commitParts(leg);
+  assert.ok(V3.norm(V3.add(parts.at, [2, 0, 1], -1)) < 1e-9);
+  assert.ok(V3.norm(V3.add(parts.rest, [2.5, 0, 1], -1)) < 1e-9);
+  assert.ok(V3.norm(V3.add(parts.nominal[0], [2, 0, 1], -1)) < 1e-9, 'the nominal part goes on from there');
+  assert.ok(V3.norm(V3.add(parts.nominal.at(-1), [5, 0, 1], -1)) < 1e-9);
+  assert.equal(Goshawk.commitParts({...leg, stopAfter: 0}), null);
+  assert.deepEqual([10.5, 12.5, 14].map(t => Goshawk.stopText(leg, t)),
+                   ['in 1.5 s, rests in 2.5 s', 'is flown, rests in 0.5 s', 'flown: at rest']);
+});
+
+test('the narrowest place ahead counts what is left of the flight alone', () => {
+  const voxels = new Goshawk.Voxels([0, -2, 0], 0.5, [12, 8, 4]);
+  const block = (x, y, z) => { voxels.cells[x + 12 * (y + 8 * z)] = 1; };
+  block(1, 3, 2);   // [0.5, 1] x [-0.5, 0] x [1, 1.5]: on the way, at its beginning
+  block(9, 5, 2);   // [4.5, 5] x [0.5, 1]: 0.5 m beside its end
+  const leg = {start: 0, trajectory: straight(5, 5)};
+  assert.equal(Goshawk.narrowest(voxels, leg, 0, 1), 0);
+  assert.ok(Math.abs(Goshawk.narrowest(voxels, leg, 3, 1) - 0.5) < 1e-9);
+  assert.equal(Goshawk.narrowest(voxels, leg, 3, 0.4), Infinity);
+});
+
+test('what is left out of a flight that plans anew is what newer plans replaced', () => {
+  const leg = (start, duration) => ({start, trajectory: {duration}});
+  const legs = [leg(0, 10), leg(2, 10), leg(2 - 1e-6, 9), {start: 3, trajectory: null}, leg(5, 4), leg(9.5, 1)];
+  const parts = Goshawk.followedLegs(legs);
+  assert.deepEqual(parts.map(p => [legs.indexOf(p.leg), Math.round(1e3 * p.until) / 1e3, p.whole]),
+                   [[0, 2, false], [2, 3, false], [4, 4, true], [5, 1, true]]);
+});
+
+test('a moving box has twelve edges of its sizes, and its prediction grows by its bound', () => {
+  const c = Math.SQRT1_2, edges = Goshawk.boxEdges([1, 2, 3], [c, 0, 0, c], [1, 2, 3]);  // turned by 90 degrees
+  const axes = [0, 1, 2].map(i => edges.map(p => p[i]));
+  const span = axes.map(a => [Math.min(...a), Math.max(...a)].map(v => Math.round(1e6 * v) / 1e6));
+  assert.deepEqual(span, [[-1, 3], [1, 3], [0, 6]]);
+  const lengths = Array.from({length: 12}, (_, k) => V3.norm(V3.add(edges[2 * k], edges[2 * k + 1], -1)));
+  assert.deepEqual(lengths.map(Math.round).sort(), [2, 2, 2, 2, 4, 4, 4, 4, 6, 6, 6, 6]);
+  const point = (x, y, z) => ({x, y, z});
+  const box = Goshawk.predictedBox({
+    id: 7, orientation: {w: 1, x: 0, y: 0, z: 0}, half_extents: point(0.25, 0.25, 1), error: 0.1, error_rate: 0.5,
+    valid_until: 1, track: [{duration: 2, control_points: [point(0, 0, 1), point(4, 0, 1)]}]});
+  const {line, boxes} = Goshawk.predictedShapes(box);
+  assert.deepEqual(line.at(-1), [2, 0, 1], 'the track holds for one second of two');
+  assert.deepEqual(boxes.map(b => b.half[0]), [0.25 + 0.1, 0.25 + 0.35, 0.25 + 0.6]);
+  const rests = Goshawk.predictedShapes({...box, track: [{duration: 3, points: [[1, 1, 1]]}]});
+  assert.deepEqual(rests.line.at(-1), [1, 1, 1], 'a track of one point stays there');
+});
+
+test('a cloud is placed in the map, and what it cannot hold is left out', () => {
+  const data = new DataView(new ArrayBuffer(48)), put = (k, p) => p.forEach((c, i) => data.setFloat32(16 * k + 4 * i, c, true));
+  put(0, [1, 0, 0]);
+  put(1, [NaN, 0, 0]);
+  put(2, [0, 2, 0]);
+  const field = (name, offset) => ({name, offset, datatype: 7, count: 1});
+  const m = {fields: [field('x', 0), field('y', 4), field('z', 8)], width: 3, height: 1, point_step: 16,
+             is_bigendian: false, data: new Uint8Array(data.buffer)};
+  assert.deepEqual(Array.from(Goshawk.cloudPlaces(m, null)), [1, 0, 0, 0, 2, 0]);
+  const turned = Array.from(Goshawk.cloudPlaces(m, {p: [10, 0, 5], q: [Math.SQRT1_2, 0, 0, Math.SQRT1_2]}));
+  assert.deepEqual(turned.map(c => Math.round(1e5 * c) / 1e5 + 0), [10, 1, 5, 8, 0, 5]);
+  assert.equal(Goshawk.cloudPlaces({...m, width: 1000}, null).length, 6, 'a cloud that says too much');
+  assert.equal(Goshawk.cloudPlaces({...m, fields: m.fields.slice(1)}, null), null);
+  assert.equal(Goshawk.cloudPlaces({...m, fields: [{...field('x', 0), datatype: 8}, ...m.fields.slice(1)]}, null), null);
 });
 
 test('a voxel in a corner has the faces that can be seen, and nooks', () => {

@@ -7,8 +7,8 @@
 
 namespace goshawk::cli {
 
-/// The times of a flown track: the stamps of odometry, which go on evenly although somebody sets the
-/// clock that makes them. A gap in odometry stays a gap.
+/// The times of a flown track: the stamps of odometry, which go on evenly although somebody sets
+/// the clock that makes them. A gap in odometry stays a gap.
 class TrackTimes {
  public:
   /// @param heard_ns when the odometry of this stamp came, on the monotonic clock

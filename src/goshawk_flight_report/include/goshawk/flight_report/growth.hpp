@@ -2,18 +2,10 @@
 
 #include <filesystem>
 #include <span>
-#include <vector>
 
-#include "goshawk/core/grid_geometry.hpp"
+#include "goshawk/flight_report/map_timeline.hpp"
 
 namespace goshawk::flight_report {
-
-/// A map at one moment of a flight.
-struct MapMoment {
-  double t_s = 0.0;             // [s] since the recording began
-  VoxelGrid grid;               // the window, known and grown
-  std::vector<Vec3> track_map;  // [m] where the vehicle has been so far
-};
 
 /// From above, one panel a moment: what is known at the heights that the vehicle flew at, what was
 /// learnt since the panel before, what is blocked, the window and the track.
