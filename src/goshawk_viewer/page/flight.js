@@ -67,6 +67,8 @@ Goshawk.FlightPage = class extends Goshawk.Page {
     this.growth = new Goshawk.Growth(this.data.growth);
     this.growth.seek(Infinity, this.changes);
     view.maps.world = view.maps.obstacles;
+    $('layer-above').parentElement.lastChild.textContent = 'the true world';
+    $('layer-above').parentElement.hidden = !view.maps.world;
     Object.assign(view.maps, {obstacles: this.growth.obstacles, known: this.growth.known});
     this.changes.clear();
   }

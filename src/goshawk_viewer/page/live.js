@@ -21,7 +21,8 @@ Goshawk.LivePage = class extends Goshawk.Page {
         `ws://${location.hostname || 'localhost'}:8765`;
     document.title = 'Goshawk live';
     $('title').textContent = 'Live';
-    $('live').hidden = false;
+    $('live').hidden = $('send').hidden = false;
+    $('save-csv').title = 'the flown track of the last minutes: t, x, y, z, vx, vy, vz';
     $('timeline').hidden = true;
     this.track = [];
     this.paths = new Map();

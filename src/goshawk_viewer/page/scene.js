@@ -296,18 +296,24 @@ Goshawk.View = class {
     return window.innerWidth > 760 ? panel.getBoundingClientRect().right : 0;
   }
 
+  // The width [pixel] that the cards on the right take.
+  rightWidth() {
+    const live = document.getElementById('live');
+    return window.innerWidth > 760 && !live.hidden ? window.innerWidth - live.getBoundingClientRect().left : 0;
+  }
+
   // Centres the picture in the part that the panel leaves free.
   shiftFromPanel() {
     const w = this.canvas.clientWidth || 1, h = this.canvas.clientHeight || 1;
-    this.camera.setViewOffset(w, h, -this.panelWidth() / 2, 0, w, h);
+    this.camera.setViewOffset(w, h, (this.rightWidth() - this.panelWidth()) / 2, 0, w, h);
   }
 
   // The part of the picture for the flight, right of the panel or below it; -1 to 1.
   freePart() {
     const w = this.canvas.clientWidth || 1, h = this.canvas.clientHeight || 1;
-    const left = this.panelWidth(), above = left ? 0 : 50;
-    const side = Math.max(24, 0.13 * (w - left)), below = Math.max(24, 0.13 * h);
-    return {left: 2 * (left + side) / w - 1, right: 1 - 2 * side / w,
+    const left = this.panelWidth(), right = this.rightWidth(), above = left ? 0 : 50;
+    const side = Math.max(24, 0.13 * (w - left - right)), below = Math.max(24, 0.13 * h);
+    return {left: 2 * (left + side) / w - 1, right: 1 - 2 * (right + side) / w,
             bottom: 2 * below / h - 1, top: 1 - 2 * (below + above) / h};
   }
 
@@ -321,6 +327,36 @@ Goshawk.View = class {
     return hit && [hit.x, hit.y, hit.z];
   }
 
+  // @return the place of the map under the pointer: an obstacle's, or one at the vehicle's height; or nothing
+  touch(event) {
+    const r = this.canvas.getBoundingClientRect(), ray = new G3.Raycaster(), map = this.maps.obstacles || this.maps.grown;
+    ray.setFromCamera({x: 2 * (event.clientX - r.left) / r.width - 1, y: 1 - 2 * (event.clientY - r.top) / r.height},
+                      this.camera);
+    const {origin, direction} = ray.ray;
+    const hit = map && Goshawk.castRay(map, origin.toArray(), direction.toArray(), map.layersBelow(this.cut));
+    return hit || this.pick(event, this.body.position.z);
+  }
+
+  // Up to two places, and the line between them.
+  setMeasure(places) {
+    this.clear('measure');
+    places.forEach(p => this.dot('measure', p, 0.06, this.theme.accent));
+    this.line('measure', places, {color: this.theme.accent, width: 2.5, hidden: true, order: 6});
+    this.redraw = true;
+  }
+
+  // The compass turns with the picture.
+  turnCompass() {
+    const away = this.controls.target.clone().sub(this.camera.position);
+    const angle = Math.atan2(away.x, away.y) * 180 / Math.PI;  // of the view, from y to x
+    document.getElementById('rose').setAttribute('transform', `rotate(${(-angle).toFixed(1)})`);
+  }
+
+  pictureUrl() {
+    this.renderer.render(this.scene, this.camera);
+    return this.canvas.toDataURL('image/png');
+  }
+
   // @return where a point of the map is on the page [pixel]
   project(p) {
     const r = this.canvas.getBoundingClientRect();
@@ -332,6 +368,7 @@ Goshawk.View = class {
     this.controls.update();
     if (!this.redraw) return;
     this.redraw = false;
+    this.turnCompass();
     this.renderer.render(this.scene, this.camera);
   }
 

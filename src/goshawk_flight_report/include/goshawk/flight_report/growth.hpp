@@ -7,8 +7,9 @@
 
 namespace goshawk::flight_report {
 
-/// From above, one panel a moment: what is known at the heights that the vehicle flew at, what was
-/// learnt since the panel before, what is blocked, the window and the track.
+/// From above, one panel a moment: what is known about the height that was flown nearby, what was
+/// learnt since the panel before, obstacles as measured (grown ones if the grid has no others), the
+/// window and the track.
 /// @return invalid_input for no moment, more than 12, or numbers that are not finite; io_failed
 Status draw_growth(std::span<const MapMoment> moments, const std::filesystem::path& png);
 
