@@ -18,7 +18,8 @@ constexpr double kResolution_m = 0.2;
 constexpr double kInflation_m = closed_loop::kBody_m + closed_loop::kTrackingMargin_m;
 // A voxel that a trunk only grazes is known to be an obstacle late, when it is near.
 constexpr double kReserve_m = kResolution_m;
-constexpr double kLook_s = 0.5;  // before the goal is given: the first scans
+constexpr double kHorizon_m = 40.0;  // of a plan: beyond the lidar's range
+constexpr double kLook_s = 0.5;      // before the goal is given: the first scans
 constexpr double kMessage_s = 0.002;
 constexpr double kThere_m = 0.1;     // the vehicle has arrived: so near, and
 constexpr double kAtRest_m_s = 0.1;  // so slow
@@ -50,6 +51,7 @@ closed_loop::Setup setup_of(const Scene& scene, const Options& options) {
   n.j_max_in_flight_m_s3 = n.j_max_m_s3;
   n.limit_norm = scene.limits.norm;
   n.unknown = UnknownSpace::free;
+  if (!options.known) setup.planning.corridor.horizon_m = kHorizon_m;
   return setup;
 }
 
