@@ -15,13 +15,13 @@ Goshawk.castRay = (voxels, origin, way, layers = voxels.size[2]) => {
   }
   if (!(enter < leave)) return null;
   const start = V3.add(from, way, enter + 1e-9), cell = start.map((c, i) => Math.max(0, Math.min(size[i] - 1, Math.floor(c))));
-  const next = cell.map((c, i) => (way[i] > 0 ? c + 1 - from[i] : c - from[i]) / way[i]);
+  const next = cell.map((c, i) => (way[i] ? ((way[i] > 0 ? c + 1 : c) - from[i]) / way[i] : Infinity));
   let at = enter;
   for (;;) {
     if (cells[cell[0] + size[0] * (cell[1] + voxels.size[1] * cell[2])]) {
       return V3.add(origin, way, at * resolution);
     }
-    const axis = [0, 1, 2].reduce((best, i) => (next[i] < next[best] ? i : best), way[0] ? 0 : way[1] ? 1 : 2);
+    const axis = [0, 1, 2].reduce((best, i) => (next[i] < next[best] ? i : best));
     at = next[axis];
     cell[axis] += Math.sign(way[axis]);
     if (!(cell[axis] >= 0 && cell[axis] < size[axis])) return null;

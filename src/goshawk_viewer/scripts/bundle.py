@@ -13,7 +13,8 @@ SCRIPTS = ["geometry.js", "theme.js", "world.js", "map_meshes.js", "map_layers.j
            "vehicle.js", "sight.js", "scene.js", "plots.js", "panel.js", "flight.js", "cdr.js",
            "octomap.js", "messages.js", "foxglove.js", "glance.js", "saved.js",
            "live.js", "start.js"]
-MESSAGES = ["geometry.js", "theme.js", "octomap.js", "sight.js"]
+MESSAGES = ["geometry.js", "theme.js", "world.js", "parts.js", "messages.js", "octomap.js",
+            "sight.js"]
 THREE = ["three.min.js", "examples/js/controls/OrbitControls.js",
          "examples/js/lines/LineSegmentsGeometry.js", "examples/js/lines/LineGeometry.js",
          "examples/js/lines/LineMaterial.js", "examples/js/lines/LineSegments2.js",

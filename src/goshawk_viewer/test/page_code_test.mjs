@@ -5,7 +5,8 @@ import assert from 'node:assert/strict';
 
 const [messages, page] = process.argv.slice(2);
 const {Goshawk, V3} = new Function(
-    ['geometry.js', 'theme.js', 'world.js', 'parts.js', 'octomap.js', 'sight.js', 'cdr.js', 'messages.js', 'glance.js'].map(
+    ['geometry.js', 'theme.js', 'world.js', 'parts.js', 'octomap.js', 'sight.js', 'cdr.js', 'messages.js', 'glance.js', 'plots.js',
+     'saved.js'].map(
         name => readFileSync(`${page}/${name}`, 'utf8')).join('\n') + '\nreturn {Goshawk, V3};')();
 
 const kBox = {normals: [1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1],
@@ -273,6 +274,55 @@ test('a cloud is placed in the map, and what it cannot hold is left out', () => 
   assert.equal(Goshawk.cloudPlaces({...m, fields: [{...field('x', 0), datatype: 8}, ...m.fields.slice(1)]}, null), null);
 });
 
+test('a ray meets the first voxel that small steps along it find', () => {
+  const voxels = randomVoxels([12, 10, 8], 0.05, 21);
+  let seed = 5, hits = 0;
+  const random = () => (seed = (seed * 16807) % 2147483647) / 2147483647;
+  for (let k = 0; k < 400; ++k) {
+    const origin = [random() * 14 - 3, random() * 12 - 2, random() * 10 - 1];
+    const to = [1 + random() * 6, 2 + random() * 5, 3 + random() * 4], along = V3.add(to, origin, -1);
+    const way = along.map(c => c / V3.norm(along));
+    let expected = null;
+    for (let s = 0; s < 25 && expected === null; s += 1e-3) {
+      const [x, y, z] = V3.add(origin, way, s).map((c, i) => Math.floor((c - voxels.origin[i]) / 0.5));
+      const inside = x >= 0 && y >= 0 && z >= 0 && x < 12 && y < 10 && z < 6;  // z: the cut
+      if (inside && voxels.cells[x + 12 * (y + 10 * z)]) expected = s;
+    }
+    const found = Goshawk.castRay(voxels, origin, way, 6);
+    if (expected === null) {
+      // A corner may be cut within a step.
+      if (found) assert.ok(Math.min(...found.map((c, i) => Math.abs((c - voxels.origin[i]) / 0.5 % 1))) < 0.01);
+      continue;
+    }
+    ++hits;
+    const distance = V3.norm(V3.add(found, origin, -1));
+    assert.ok(distance < expected + 1e-6 && distance > expected - 0.01, `${distance}, not ${expected}`);
+  }
+  assert.ok(hits > 50, `${hits} rays hit something`);
+  const row = new Goshawk.Voxels([0, 0, 0], 1, [5, 1, 1]);
+  row.cells[3] = 1;
+  assert.deepEqual(Goshawk.castRay(row, [-2, 0.5, 0.5], [1, 0, 0]), [3, 0.5, 0.5]);
+  assert.equal(Goshawk.castRay(row, [-2, 1.5, 0.5], [1, 0, 0]), null);
+});
+
+test('what is measured and saved is what was clicked and flown', () => {
+  assert.equal(Goshawk.measureText([[0, 0, 1], [3, 4, 13]]), '13.00 m (level 5.00 m, up 12.00 m)');
+  const track = [{t: 0, p: [1, 2, 3], v: [0.5, 0, 0]}, {t: 0.02, p: [1.01, 2, 3], v: [0.5, 0, 0]}];
+  assert.equal(Goshawk.trackCsv(track), 't_s,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s\n0,1,2,3,0.5,0,0\n0.02,1.01,2,3,0.5,0,0\n');
+});
+
+test('plots are saved with their curves and limits at their values', () => {
+  const plot = {title: 'speed', unit: 'm/s', limit: 2, scale: 1, span: [0, 10], zero: 0, top: 2.24, series: [
+    {name: 'flown', color: '#123456', points: [[0, 0], [10, 2]], width: 1}]};
+  const svg = Goshawk.plotsSvg([plot], {text: '#000', line: '#eee', limit: '#f00', back: '#fff'}, 'A & <B>');
+  assert.match(svg, /A &amp; &lt;B>/);
+  const [, x0, y0, x1, y1] = svg.match(/M([\d.]+) ([\d.]+)L([\d.]+) ([\d.]+)" fill="none" stroke="#123456"/).map(Number);
+  const limit = Number(svg.match(/M60 ([\d.]+)H[\d.]+" stroke="#f00"/)[1]);
+  assert.ok(x0 < x1 && y0 > y1);
+  assert.ok(Math.abs(y1 - limit) < 0.01, 'the curve ends at the limit');
+  assert.match(svg, />speed \[m\/s\]</);
+});
+
 test('a voxel in a corner has the faces that can be seen, and nooks', () => {
   const voxels = new Goshawk.Voxels([0, 0, 0], 1, [2, 1, 1]);
   voxels.cells.fill(1);
@@ -310,7 +360,8 @@ test('the studio draws a plan as a corridor and a trajectory by speed', () => {
     request: {limits: {v_max: 2}}, polytopes: [kBox],
     pieces: [{duration: 1, control_points: [0, 1, 2, 3, 4, 5].map(k => point([0.4 * k, 3, 0]))}]}};
   const {entities} = studio()['goshawk_msgs/msg/CommittedTrajectory'](plan);
-  const [corridor, trajectory] = entities;
+  const [corridor, trajectory, stop] = entities;
+  assert.deepEqual([stop.lines, stop.spheres], [[], []], 'it has no stop part');
   assert.equal(corridor.lines[0].points.length, 2 * 24);  // each edge from both its faces
   assert.equal(corridor.triangles[0].indices.length, 3 * 12);
   const line = trajectory.lines[0];
@@ -336,4 +387,41 @@ test('the studio draws the faces of a map, and counts what it draws', () => {
   const {triangles} = draw({header: {stamp: stamp(1)}, data: cornerTree(2), resolution: 0.5}).entities[0];
   assert.equal(triangles[0].points.length, 6 * 4);
   assert.equal(globalThis.goshawkDrawn['octomap_msgs/msg/Octomap'], 1);
+});
+
+test('the studio draws a map as it grows, from updates that follow, twice a second', () => {
+  const draw = studio(), words = (...set) => {
+    const all = new BigUint64Array(64);
+    for (const [y, z, bits] of set) all[y + 8 * z] = bits;
+    return all;
+  };
+  const whole = {header: {stamp: stamp(1)}, version: 3, origin: point([0, 0, 0]), resolution: 1, size_x: 4, size_y: 8,
+                 size_z: 8, grown: words(), known: words([0, 0, 3n]), raw: words([0, 0, 2n]), unknown_is_occupied: false};
+  const faces = entities => entities.map(e => [e.id, e.triangles[0].points.length / 4]);
+  // One obstacle; beside it one free voxel, with three unknown neighbours inside of the map.
+  assert.deepEqual(faces(draw['goshawk_msgs/msg/VoxelGrid'](whole).entities),
+                   [['obstacles seen', 6], ['edge of the unseen', 2]]);
+  const update = (from, t, raw) => draw['goshawk_msgs/msg/VoxelGridUpdate']({
+    header: {stamp: stamp(t)}, from_version: from, to_version: from + 1, shift_word_x: 0, shift_brick_y: 0, shift_brick_z: 0,
+    bricks: [{word_x: 0, brick_y: 0, brick_z: 0, grown: words(), known: words([0, 0, 7n]), raw}]}).entities;
+  assert.deepEqual(update(2, 2, words([0, 0, 6n])), [], 'one that does not follow');
+  assert.deepEqual(faces(update(3, 2, words([0, 0, 6n]))), [['obstacles seen', 10], ['edge of the unseen', 2]]);
+  assert.deepEqual(update(4, 2.2, words()), [], 'too soon');
+  const again = draw['goshawk_msgs/msg/VoxelGrid'](whole);
+  assert.deepEqual([again.entities, again.deletions.map(d => d.type)], [[], [1]], 'updates are drawn instead');
+  assert.deepEqual(update(5, 2.6, words()), [], 'the older map came again');
+  assert.deepEqual(faces(update(3, 2.6, words([0, 0, 4n]))).map(([, n]) => n), [6, 4]);
+});
+
+test('the studio draws what moves, its track and its bound', () => {
+  const converters = studio(), q = {x: 0, y: 0, z: 0, w: 1};
+  const moving = converters['goshawk_msgs/msg/MovingBoxes']({header: {stamp: stamp(1)}, boxes: [
+    {id: 1, kind: '', pose: {position: point([1, 2, 3]), orientation: q}, half_extents: point([0.5, 1, 2])}]});
+  assert.deepEqual(moving.entities[0].cubes[0].size, {x: 1, y: 2, z: 4});
+  const {entities} = converters['goshawk_msgs/msg/PredictedObstacles']({header: {stamp: stamp(1)}, obstacles: [
+    {id: 1, orientation: q, half_extents: point([1, 1, 1]), error: 0.5, error_rate: 0, valid_until: 1,
+     track: [{duration: 1, control_points: [point([0, 0, 0]), point([3, 0, 0])]}]},
+    {id: 2, orientation: q, half_extents: point([1, 1, 1]), error: 0, error_rate: 0, valid_until: 1, track: []}]});
+  assert.equal(entities[0].lines.length, 1 + 3, 'one without a track is left out');
+  assert.equal(Math.max(...entities[0].lines[3].points.map(p => p.x)), 4.5);
 });
