@@ -68,6 +68,8 @@ struct Config {
   SensorParameters sensor;
   std::string world_file = "";
   int world_seed = 1;
+  std::string movers_file = "";
+  double movers_start_s = 0.0;
   Boundary boundary = Boundary::open;
   std::string frame = "sensor";
   CloudFrame cloud_frame = CloudFrame::sensor;
@@ -85,6 +87,11 @@ void describe(Self& c, Visitor&& visit) {
         "map of the true world (.bt, .ot, .pcd, .ply, .3dmap); empty: the default made world",
         Anything{});
   visit("world_seed", c.world_seed, "", "seed of the default made world", Range{0.0, 2147483647.0});
+  visit("movers_file", c.movers_file, "",
+        "what moves in the true world (docs/movers.md); empty: nothing", Anything{});
+  visit("movers_start_s", c.movers_start_s, "s",
+        "stamp at which the movers' time is 0; the same for all that read the file",
+        Range{0.0, 1e10});
   visit(
       "boundary", c.boundary, "",
       "what lies around the world: open (nothing), floor (at its lower face) or box (floor, walls "

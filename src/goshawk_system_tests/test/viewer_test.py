@@ -11,7 +11,7 @@ import socket
 
 import harness
 from harness import GOSHAWK, PREFIX, SOURCE, SystemTest, note, until
-from map_test import MapCase, cloud, odometry
+from map_case import MapCase, cloud, odometry
 from stack import StackTest
 from viewer_pages import page_data
 
