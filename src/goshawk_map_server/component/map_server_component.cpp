@@ -97,13 +97,16 @@ class MapServerComponent : public Component {
   void subscribe() {
     node_.subscribe<sensor_msgs::msg::PointCloud2>(
         "cloud_in", Qos::best_effort(2),
-        [this](const sensor_msgs::msg::PointCloud2& m, const MessageInfo&) { on_cloud(m); });
+        [this](const sensor_msgs::msg::PointCloud2& m, const MessageInfo&) { on_cloud(m); },
+        sensor("cloud_in"));
     node_.subscribe<sensor_msgs::msg::CameraInfo>(
         "depth_info_in", Qos::best_effort(2),
-        [this](const sensor_msgs::msg::CameraInfo& m, const MessageInfo&) { on_camera(m); });
+        [this](const sensor_msgs::msg::CameraInfo& m, const MessageInfo&) { on_camera(m); },
+        sensor("depth_info_in"));
     node_.subscribe<sensor_msgs::msg::Image>(
         "depth_in", Qos::best_effort(2),
-        [this](const sensor_msgs::msg::Image& m, const MessageInfo&) { on_depth(m); });
+        [this](const sensor_msgs::msg::Image& m, const MessageInfo&) { on_depth(m); },
+        sensor("depth_in"));
     node_.subscribe<octomap_msgs::msg::Octomap>(
         "octomap_in", Qos::reliable_last(1),
         [this](const octomap_msgs::msg::Octomap& m, const MessageInfo&) { on_map(m); });
@@ -117,6 +120,10 @@ class MapServerComponent : public Component {
     node_.subscribe<tf2_msgs::msg::TFMessage>(
         "/tf", Qos::best_effort(100),
         [this](const tf2_msgs::msg::TFMessage& m, const MessageInfo&) { on_frames(m, false); });
+  }
+
+  Writers sensor(const char* topic) const {
+    return config_.any_sensor ? Writers::any() : Writers::one(topic);
   }
 
   void publish_whole() {
@@ -175,6 +182,8 @@ class MapServerComponent : public Component {
     for (const auto& t : m.transforms()) {
       // The vehicle's own pose comes as odometry.
       if (t.child_frame_id() == conversions::kBodyFrame) continue;
+      // What a parameter says of the mount, nobody else says.
+      if (t.child_frame_id() == config_.sensor_frame) continue;
       const auto q = conversions::from_msg(t.transform().rotation());
       const Vec3 p = conversions::from_msg(t.transform().translation());
       if (!q || !is_finite(p)) {
