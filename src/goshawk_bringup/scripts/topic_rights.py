@@ -45,7 +45,7 @@ STAGES = {
 }
 # They are no stages: they report nothing.
 PEOPLE = {
-    "viewer": {"reads": ALL, "writes": ["goal_pose", "operator_command"]},
+    "viewer": {"reads": ALL, "writes": ["goal_pose", "operator_command", "why"]},
     "recorder": {"reads": ALL, "writes": []},
     "benchmark": {"reads": ["trajectory", "stage_report"], "writes": ["plan_request"]},
     "operator": {"reads": ALL, "writes": ["goal_pose", "goal", "mission", "operator_command",
