@@ -77,6 +77,7 @@ struct Config {
   Missing missing = Missing::automatic;
   ImageEncoding image_encoding = ImageEncoding::float_m;
   bool camera_cloud = true;
+  bool covered = false;
 };
 
 template <typename Self, typename Visitor>
@@ -116,6 +117,8 @@ void describe(Self& c, Visitor&& visit) {
         "depth camera: 32FC1 (metres) or 16UC1 (millimetres)", Anything{});
   visit("camera_cloud", c.camera_cloud, "", "depth camera: also publish the points as a cloud",
         Anything{});
+  visit("covered", c.covered, "", "something covers the lens: no ray returns",
+        AtRunTime{Anything{}});
 }
 
 }  // namespace goshawk::sensors

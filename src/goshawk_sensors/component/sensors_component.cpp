@@ -73,7 +73,7 @@ class SensorsComponent : public Component {
  public:
   explicit SensorsComponent(Node& node)
       : node_(node),
-        config_(node.parameters<Config>()),
+        config_(node.parameters<Config>([this](const Config& c) { return reconfigure(c); })),
         sensor_(make_sensor(config_)),
         form_(CloudForm::of(config_)),
         moving_(read_moving(config_)),
@@ -90,7 +90,8 @@ class SensorsComponent : public Component {
     }
     node.subscribe<nav_msgs::msg::Odometry>(
         "odom", Qos::best_effort(10),
-        [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) { on_odometry(m); });
+        [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) { on_odometry(m); },
+        Writers::one("odom"));
     node.every(kLookAgain_s, [this] {
       if (!world_) look_for_world();
     });
@@ -104,6 +105,12 @@ class SensorsComponent : public Component {
     std::optional<PointCloud2> cloud;
     std::optional<Image> image;
   };
+
+  Status reconfigure(const Config& config) {
+    if (auto status = check_change(config_, config); !status) return status;
+    config_ = config;
+    return success();
+  }
 
   void look_for_world() {
     const auto voxels = read_voxels(config_);
@@ -138,7 +145,12 @@ class SensorsComponent : public Component {
     }
   }
 
-  void take(const Scan& scan) {
+  void take(const Scan& seen) {
+    if (config_.covered) {
+      dark_ = seen;
+      for (Return& r : dark_.returns) r = {.offset_ns = r.offset_ns, .ring = r.ring};
+    }
+    const Scan& scan = config_.covered ? dark_ : seen;
     Waiting& waiting = waiting_.emplace_back();
     waiting.due_ns = scan.end_ns + std::llround(1e9 * config_.sensor.latency_s);
     if (image_) fill_msg(scan, config_, waiting.image.emplace());
@@ -168,6 +180,7 @@ class SensorsComponent : public Component {
   std::optional<Publisher<CameraInfo>> info_;
   std::shared_ptr<const World> world_;
   std::deque<Waiting> waiting_;
+  Scan dark_;  // of a covered lens
 };
 
 }  // namespace
