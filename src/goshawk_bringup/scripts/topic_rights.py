@@ -21,7 +21,9 @@ STAGES = {
     "navigator": {"reads": [*MAP, "goal_pose", "goal", "operator_command", "odom", "trajectory",
                             "stage_report", "tracking_state"],
                   "writes": ["plan_request", "committed_trajectory", "navigator_state",
-                             "navigator_alive", "operator_answer"]},
+                             "navigator_alive", "operator_answer",
+                             # In place of plan_request, while a benchmark asks for the plans.
+                             "bench/unheard_requests"]},
     "mission": {"reads": ["mission", "operator_command", "navigator_state", "odom"],
                 "writes": ["goal", "mission_state", "operator_answer"]},
     # In the navigator's place, for another planner's plans.
@@ -29,8 +31,8 @@ STAGES = {
                         "odom", "tracking_state", "stage_report"],
               "writes": ["committed_trajectory", "guard_verdict", "navigator_state",
                          "navigator_alive"]},
-    "tracker": {"reads": [*MAP, "committed_trajectory", "odom", "navigator_alive",
-                          "stage_report"],
+    "tracker": {"reads": [*MAP, "committed_trajectory", "odom", "vehicle_status",
+                          "navigator_alive", "stage_report"],
                 "writes": ["command", "fallback_stop", "tracking_state"]},
     "vehicle": {"reads": [*MAP, "command", "fallback_stop"],
                 "writes": ["odom", "odom_true", "vehicle_status", "/tf"]},
@@ -43,8 +45,9 @@ STAGES = {
 }
 # They are no stages: they report nothing.
 PEOPLE = {
-    "viewer": {"reads": ALL, "writes": ["goal_pose", "operator_command"]},
+    "viewer": {"reads": ALL, "writes": ["goal_pose", "operator_command", "why"]},
     "recorder": {"reads": ALL, "writes": []},
+    "benchmark": {"reads": ["trajectory", "stage_report"], "writes": ["plan_request"]},
     "operator": {"reads": ALL, "writes": ["goal_pose", "goal", "mission", "operator_command",
                                           "octomap_in", "/parameter_request"]},
 }

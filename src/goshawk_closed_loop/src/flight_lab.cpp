@@ -131,9 +131,10 @@ double FlightLab::delay_s(double computed_s) {
 
 void FlightLab::answer(const PlanRequest& request, Planning::Answer planned) {
   const double checked_s = timed_s([&] {
-    if (planned.last != StageRole::path_search) {
-      navigator_.on_report(request.id, StageRole::path_search, Error{ErrorCode::ok, ""}, now_ns(),
-                           planned.goal_moved_m);
+    for (const StageRole stage : {StageRole::path_search, StageRole::corridor_builder}) {
+      if (stage == planned.last) break;
+      navigator_.on_report(request.id, stage, Error{ErrorCode::ok, ""}, now_ns(),
+                           planned.shortfall);
     }
     if (planned.commitment) {
       navigator_.on_trajectory(*std::move(planned.commitment), ++answers_, now_ns());

@@ -3,6 +3,8 @@
 #include <ctime>
 #include <optional>
 
+#include "goshawk/corridor_builder/horizon.hpp"
+
 namespace goshawk::closed_loop {
 
 double processor_time_s(const std::function<void()>& work) {
@@ -23,7 +25,8 @@ Result<Planning> Planning::create(const Config& config) {
   if (!builder) return builder.error();
   auto optimizer = trajectory_optimizer::TrajectoryOptimizer::create(config.optimizer);
   if (!optimizer) return optimizer.error();
-  return Planning(*std::move(search), *std::move(builder), *std::move(optimizer));
+  return Planning(*std::move(search), *std::move(builder), *std::move(optimizer),
+                  config.corridor.horizon_m);
 }
 
 void Planning::set_map(std::shared_ptr<const VoxelGrid> map) {
@@ -35,24 +38,25 @@ Planning::Answer Planning::plan(const PlanRequest& request, const Stopwatch& sto
   Times times;
   std::optional<Result<path_search::PlannedPath>> path;
   times.search_s = stopwatch([&] { path.emplace(search_.plan(request)); });
-  if (!*path) return {path->error(), StageRole::path_search, 0.0, times};
-  const double moved_m = (*path)->goal_moved_m;
-  const std::vector<Vec3>& waypoints = (*path)->waypoints_map;
+  if (!*path) return {path->error(), StageRole::path_search, {}, times};
+  const auto part = corridor_builder::within_horizon((*path)->waypoints_map, horizon_m_);
+  const std::vector<Vec3>& waypoints = part.waypoints_map;
+  const navigator::Shortfall shortfall{(*path)->goal_moved_m, part.beyond_m};
   std::optional<Result<Corridor>> corridor;
   times.corridor_s = stopwatch([&] { corridor.emplace(builder_.build(*map_, waypoints)); });
-  if (!*corridor) return {corridor->error(), StageRole::corridor_builder, moved_m, times};
-  // As the search moved the ends, if it did.
+  if (!*corridor) return {corridor->error(), StageRole::corridor_builder, shortfall, times};
+  // As the search moved the ends, if it did, and within the horizon.
   PlanRequest moved = request;
   if ((*path)->start_moved_m > 0.0) moved.start.position = waypoints.front();
   moved.goal.position = waypoints.back();
   std::optional<Result<trajectory_optimizer::Solution>> solution;
   times.optimizer_s = stopwatch([&] { solution.emplace(optimizer_.optimise(moved, **corridor)); });
-  if (!*solution) return {solution->error(), StageRole::trajectory_optimizer, moved_m, times};
+  if (!*solution) return {solution->error(), StageRole::trajectory_optimizer, shortfall, times};
   return {Commitment{.id = request.id,
                      .nominal = std::move((*solution)->certified),
                      .map_version = map_->version,
                      .yaw_curve = std::move((*solution)->yaw)},
-          StageRole::trajectory_optimizer, moved_m, times};
+          StageRole::trajectory_optimizer, shortfall, times};
 }
 
 }  // namespace goshawk::closed_loop

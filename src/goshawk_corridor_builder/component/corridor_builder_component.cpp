@@ -2,6 +2,7 @@
 
 #include "goshawk/corridor_builder/config.hpp"
 #include "goshawk/corridor_builder/corridor_builder.hpp"
+#include "goshawk/corridor_builder/horizon.hpp"
 #include "goshawk/runtime/component.hpp"
 #include "goshawk/stage/intake.hpp"
 #include "goshawk/stage/map_subscription.hpp"
@@ -45,6 +46,7 @@ class CorridorBuilderComponent : public Component {
     if (auto status = builder_.reconfigure(config); !status) return status;
     if (auto status = fallback_.reconfigure(on_grown_grid(config)); !status) return status;
     reporter_.set_implementation(std::string(builder_.implementation()));
+    horizon_m_ = config.horizon_m;
     return success();
   }
 
@@ -60,11 +62,17 @@ class CorridorBuilderComponent : public Component {
     }
     const auto waypoints = conversions::waypoints_of(m);
     if (!waypoints) return reporter_.failed(request.id, waypoints.error(), timing);
-    auto [corridor, compute_ns] = timed([&] { return build(*waypoints); });
+    const FirstPart part = within_horizon(*waypoints, horizon_m_);
+    auto [corridor, compute_ns] = timed([&] { return build(part.waypoints_map); });
     timing.compute_ns = compute_ns;
     if (!corridor) return reporter_.failed(request.id, corridor.error(), timing);
-    publish(m.request(), *corridor, compute_ns);
-    report(request.id, *corridor, timing);
+    auto answered = m.request();
+    if (part.beyond_m > 0.0) {
+      answered.goal().position(conversions::to_point(part.waypoints_map.back()));
+    }
+    // First the report: the navigator must know how far the plan ends from the goal.
+    report(request.id, *corridor, part.beyond_m, timing);
+    publish(answered, *corridor, compute_ns);
   }
 
   Status check_map(const msg::Path& m) const {
@@ -92,12 +100,13 @@ class CorridorBuilderComponent : public Component {
     reporter_.send(publisher_, m, request.id());
   }
 
-  void report(std::uint64_t id, const Corridor& corridor, const Timing& timing) {
+  void report(std::uint64_t id, const Corridor& corridor, double beyond_m, const Timing& timing) {
     double faces = 0;
     for (const auto& polytope : corridor.polytopes) faces += polytope.faces();
     reporter_.answered(id, timing,
                        {{"polytopes", double(corridor.polytopes.size())},
                         {"faces", faces},
+                        {"beyond_m", beyond_m},
                         {"min_overlap_radius_m", corridor.min_overlap_radius_m()}},
                        lacks_raw() ? "margin grown_grid: the map brings no raw voxels, set "
                                      "publish_raw of map_server"
@@ -106,6 +115,7 @@ class CorridorBuilderComponent : public Component {
 
   Node& node_;
   const Config config_;  // as it was at start
+  double horizon_m_ = config_.horizon_m;
   CorridorBuilder builder_;
   CorridorBuilder fallback_;  // margin grown_grid
   StageReporter reporter_;

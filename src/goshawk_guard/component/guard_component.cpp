@@ -8,6 +8,7 @@
 #include "goshawk/guard/guard.hpp"
 #include "goshawk/runtime/component.hpp"
 #include "goshawk/stage/intake.hpp"
+#include "goshawk/stage/life_sign.hpp"
 #include "goshawk/stage/map_subscription.hpp"
 #include "plan_messages.hpp"
 
@@ -23,8 +24,6 @@ namespace msg = goshawk_msgs::msg;
 std::uint64_t first_id(std::int64_t now_ns) {
   return std::max<std::uint64_t>(1, std::uint64_t(now_ns / 1'000'000));
 }
-
-constexpr double kAlive_s = 0.5;  // the newest state again: the tracker lands without it
 
 /// Only the tracker's answers count, and from one process.
 std::uint8_t tracking_stage(const msg::StageReport& m) {
@@ -80,7 +79,7 @@ class GuardComponent : public Component {
         commits_(node.advertise<msg::CommittedTrajectory>("committed_trajectory", Qos::latched())),
         verdicts_(node.advertise<msg::GuardVerdict>("guard_verdict", Qos::latched(20))),
         states_(node.advertise<msg::NavigatorState>("navigator_state", Qos::latched(20))),
-        alive_(node.advertise<msg::NavigatorState>("navigator_alive", Qos::best_effort())),
+        life_sign_(node, reporter_, state_),
         map_(node, reporter_, [this](const auto& grid) {
           guard_.set_map(grid, node_.monotonic_ns());
           publish_commits();
@@ -94,7 +93,6 @@ class GuardComponent : public Component {
       publish_state();
     });
     publish_state();
-    node.every(kAlive_s, [this] { reporter_.send(alive_, state_); });
     reporter_.ready(
         "waits for plans on plan/path, plan/trajectory, plan/polynomial and "
         "plan/bspline");
@@ -193,6 +191,7 @@ class GuardComponent : public Component {
       m.nominal(nominal_of(commit, start_ns));
       conversions::fill_msg(committed, m);
       m.start_time(conversions::to_stamp(start_ns));
+      life_sign_.before_commit();
       reporter_.send(commits_, m, committed.id());
     }
   }
@@ -250,8 +249,8 @@ class GuardComponent : public Component {
   Publisher<msg::CommittedTrajectory> commits_;
   Publisher<msg::GuardVerdict> verdicts_;
   Publisher<msg::NavigatorState> states_;
-  Publisher<msg::NavigatorState> alive_;
   msg::NavigatorState state_;
+  stage::LifeSign life_sign_;
   Decision newest_;
   std::uint64_t told_plan_ = 0;
   MapSubscription map_;

@@ -5,6 +5,7 @@
 #include "goshawk/navigator/navigator.hpp"
 #include "goshawk/runtime/component.hpp"
 #include "goshawk/stage/intake.hpp"
+#include "goshawk/stage/life_sign.hpp"
 #include "goshawk/stage/map_subscription.hpp"
 #include "goshawk/stage/operator_desk.hpp"
 #include "kept_answers.hpp"
@@ -38,11 +39,14 @@ std::uint8_t to_msg(State state) {
 /// What the navigator plans by itself, for those who read who planned.
 constexpr const char* kBrakeName = "navigator_brake";
 
-double moved_m(const msg::StageReport& m) {
+Shortfall shortfall_of(const msg::StageReport& m) {
+  Shortfall shortfall;
   for (const auto& counter : m.counters()) {
-    if (counter.name() == "goal_moved_m") return counter.value();
+    if (!(counter.value() >= 0.0) || !std::isfinite(counter.value())) continue;
+    if (counter.name() == "goal_moved_m") shortfall.goal_moved_m = counter.value();
+    if (counter.name() == "beyond_m") shortfall.beyond_m = counter.value();
   }
-  return 0.0;
+  return shortfall;
 }
 
 /// The same trajectory, by another clock.
@@ -55,8 +59,6 @@ Result<CommittedTrajectory> begun_at(const CommittedTrajectory& committed, std::
                                     .yaw_rad = committed.yaw_rad(),
                                     .yaw_curve = committed.yaw_curve()});
 }
-
-constexpr double kAlive_s = 0.5;  // the newest state again: the tracker lands without it
 
 /// A report can end a request, so it is heard from one process for each stage of the plan and for
 /// the tracker. @return 0: anybody's
@@ -82,7 +84,7 @@ class NavigatorComponent : public Component {
         requests_(node.advertise<msg::PlanRequest>("plan_request", Qos::reliable_last())),
         commits_(node.advertise<msg::CommittedTrajectory>("committed_trajectory", Qos::latched())),
         states_(node.advertise<msg::NavigatorState>("navigator_state", Qos::latched(20))),
-        alive_(node.advertise<msg::NavigatorState>("navigator_alive", Qos::best_effort())),
+        life_sign_(node, reporter_, state_message_),
         map_(node, reporter_, [this](const auto& grid) {
           navigator_.on_map(grid, node_.monotonic_ns());
           carry_out();
@@ -95,7 +97,6 @@ class NavigatorComponent : public Component {
     });
     if (config_.memory_file.empty()) publish(StateOrder{});
     if (config_.memory_file.empty() || node.monotonic_ns() > 0) resume();
-    node.every(kAlive_s, [this] { reporter_.send(alive_, state_message_); });
     reporter_.ready("waits for a goal on goal_pose");
   }
 
@@ -211,7 +212,7 @@ class NavigatorComponent : public Component {
   void on_report(const msg::StageReport& m) {
     const Error outcome{conversions::error_code_of(m.code()), m.message()};
     navigator_.on_report(m.request_id(), conversions::stage_role_of(m.stage()), outcome,
-                         node_.monotonic_ns(), moved_m(m));
+                         node_.monotonic_ns(), shortfall_of(m));
     carry_out();
   }
 
@@ -257,8 +258,7 @@ class NavigatorComponent : public Component {
     const auto orders = navigator_.take_orders();
     if (orders.empty()) return;
     for (const Order& order : orders) {
-      if (const auto* commit = std::get_if<Commit>(&order))
-        published_.push_back(message_of(*commit));
+      if (const auto* commit = std::get_if<Commit>(&order)) keep(message_of(*commit));
     }
     const auto legs = published_;
     // A request for a better plan changes nothing that the next navigator must know.
@@ -269,6 +269,15 @@ class NavigatorComponent : public Component {
       if (const auto* request = std::get_if<PlanRequest>(&order)) publish(*request);
       if (const auto* state = std::get_if<StateOrder>(&order)) publish(*state);
       if (const auto* complaint = std::get_if<Complaint>(&order)) publish(*complaint);
+    }
+  }
+
+  void keep(PublishedLeg leg) {
+    const auto at = std::ranges::find(published_, id_of(leg), &id_of);
+    if (at == published_.end()) {
+      published_.push_back(std::move(leg));
+    } else {
+      *at = std::move(leg);
     }
   }
 
@@ -289,24 +298,27 @@ class NavigatorComponent : public Component {
   PublishedLeg message_of(const Commit& commit) const {
     const CommittedTrajectory& committed = commit.trajectory;
     const auto known = std::ranges::find(published_, committed.id(), &id_of);
-    if (known != published_.end()) return *known;
     const auto* answer = answers_.find(commit.answer);
     const auto continued = std::ranges::find(published_, commit.continues, &id_of);
     PublishedLeg m;
-    m.header(conversions::make_header(node_.now_ns()));
-    if (continued != published_.end()) {
+    if (known != published_.end()) {
+      m = *known;
+    } else if (continued != published_.end()) {
       m.nominal(continued->nominal());
       m.nominal().request().id(committed.id());
     } else {
       m.nominal(answer != nullptr ? answer->message : nominal_of(committed));
     }
-    conversions::fill_msg(committed, m);
+    if (known == published_.end()) conversions::fill_msg(committed, m);
+    // Also of one that is repeated: this host's clock may have been set since.
+    m.header(conversions::make_header(node_.now_ns()));
     m.start_time(conversions::to_stamp(to_wall_ns(committed.start_time_ns())));
     return m;
   }
 
   void publish(const Commit& commit, const std::vector<PublishedLeg>& legs) {
     const std::uint64_t id = commit.trajectory.id();
+    life_sign_.before_commit();
     reporter_.send(commits_, *std::ranges::find(legs, id, &id_of));
     const auto* answer = answers_.find(commit.answer);
     reporter_.answered(id, {.wire_ns = answer != nullptr ? answer->wire_ns : 0});
@@ -356,11 +368,11 @@ class NavigatorComponent : public Component {
   Publisher<msg::PlanRequest> requests_;
   Publisher<msg::CommittedTrajectory> commits_;
   Publisher<msg::NavigatorState> states_;
-  Publisher<msg::NavigatorState> alive_;
+  msg::NavigatorState state_message_;
+  LifeSign life_sign_;
   KeptAnswers answers_;
   std::vector<PublishedLeg> published_;  // of what is flown, by start
   bool resumed_ = false;
-  msg::NavigatorState state_message_;
   MapSubscription map_;
 };
 

@@ -21,7 +21,8 @@ Status refuse(const std::string& why) {
 
 }  // namespace
 
-Status check_answer(const Commitment& answer, const PlanRequest& request, double goal_moved_m) {
+Status check_answer(const Commitment& answer, const PlanRequest& request,
+                    const Shortfall& shortfall) {
   const CertifiedTrajectory& nominal = answer.nominal;
   if (!same(nominal.limits(), request.limits)) return refuse("it was planned with other limits");
   const FlatState begins = nominal.trajectory().sample(0.0);
@@ -34,7 +35,7 @@ Status check_answer(const Commitment& answer, const PlanRequest& request, double
   }
   const Vec3 ends = nominal.trajectory().sample(nominal.duration_s()).position;
   if (const double gap_m = (ends - request.goal.position).norm();
-      !(gap_m <= goal_moved_m + kSameGoal_m)) {
+      !(gap_m <= shortfall.goal_moved_m + shortfall.beyond_m + kSameGoal_m)) {
     return refuse(fmt::format("it ends at {} m, {:.3g} m from the goal", to_text(ends), gap_m));
   }
   return success();

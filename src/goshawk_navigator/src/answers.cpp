@@ -37,7 +37,7 @@ void Navigator::on_trajectory(Commitment candidate, std::uint64_t number, std::i
 void Navigator::take_answer(Commitment candidate, std::uint64_t number, std::int64_t now_ns) {
   if (open_->improves) return take_improvement(std::move(candidate), number, now_ns);
   const PlanRequest& request = open_->request;
-  if (auto status = check_answer(candidate, request, open_->goal_moved_m); !status) {
+  if (auto status = check_answer(candidate, request, open_->shortfall); !status) {
     return refuse_answer(status.error());
   }
   if (const auto too_late_ns = open_->too_late_ns(); too_late_ns && now_ns > *too_late_ns) {
@@ -63,7 +63,7 @@ void Navigator::take_answer(Commitment candidate, std::uint64_t number, std::int
       return act_on(status.error(), now_ns);  // planned in an older map: it was right to try
     }
   }
-  commit(*std::move(committed), number, now_ns);
+  commit(*std::move(committed), open_->shortfall.beyond_m, number, now_ns);
 }
 
 // Counted and said; the request stays open, for a good answer may still come.
@@ -108,10 +108,11 @@ void Navigator::check_pending(std::int64_t now_ns) {
          now_ns);
 }
 
-void Navigator::commit(CommittedTrajectory committed, std::uint64_t number, std::int64_t now_ns) {
+void Navigator::commit(CommittedTrajectory committed, double beyond_m, std::uint64_t number,
+                       std::int64_t now_ns) {
   orders_.push_back(Commit{committed, number});
   left_.reset();
-  schedule_.add({.committed = std::move(committed)});
+  schedule_.add({.committed = std::move(committed), .beyond_m = beyond_m});
   drop_open();
   dropped_id_ = 0;
   pursuit_.open = false;
@@ -120,12 +121,13 @@ void Navigator::commit(CommittedTrajectory committed, std::uint64_t number, std:
 }
 
 void Navigator::on_report(std::uint64_t id, StageRole stage, const Error& outcome,
-                          std::int64_t now_ns, double goal_moved_m) {
+                          std::int64_t now_ns, const Shortfall& shortfall) {
   if (stage == StageRole::tracker) return on_tracker_report(id, outcome, now_ns);
   if (!open_ || id != open_->request.id || !plans(stage)) return;
   if (outcome.code == ErrorCode::ok) {
     open_->last_stage = stage;
-    if (stage == StageRole::path_search) open_->goal_moved_m = goal_moved_m;
+    if (stage == StageRole::path_search) open_->shortfall.goal_moved_m = shortfall.goal_moved_m;
+    if (stage == StageRole::corridor_builder) open_->shortfall.beyond_m = shortfall.beyond_m;
     return;
   }
   if (open_->failure) return;
@@ -195,7 +197,7 @@ void Navigator::on_map(std::shared_ptr<const VoxelGrid> grid, std::int64_t now_n
   }
   check_legs(now_ns);
   move_stop(now_ns);
-  improve(now_ns);
+  improve_by_new_map(now_ns);
 }
 
 // A goal that failed because of the map is taken up again when the map has changed since.
@@ -220,6 +222,7 @@ void Navigator::check_legs(std::int64_t now_ns) {
     const double from_s = double(from_ns - leg.start_ns()) * 1e-9;
     const double to_s = double(until_ns - leg.start_ns()) * 1e-9;
     if (!find_obstruction(space_, leg.committed.flown(), from_s, to_s)) continue;
+    if (&leg == schedule_.last() && stop_sooner(now_ns)) return;
     return blocked(check_against(space_, leg.committed, from_s).error(), now_ns);
   }
 }

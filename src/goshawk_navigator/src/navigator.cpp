@@ -42,12 +42,23 @@ void Navigator::resume(Memory memory, std::int64_t now_ns) {
   for (Leg& leg : memory.legs) {
     next_id_ = std::max(next_id_, leg.id() + 1);
     leg.accepted = false;
+    leg.beyond_m = left_m(leg);
     if (leg.end_ns() > now_ns) orders_.push_back(Commit{leg.committed, 0});
     schedule_.add(std::move(leg));
   }
   next_id_ = std::max(next_id_, newest_id_ + 1);
   if (memory.open && schedule_.moves(now_ns)) pursuit_.revoked_ns = now_ns;
   enter(memory.state, now_ns, std::move(memory.reason));
+}
+
+// [m] from the end of a leg's plan to the goal, straight: how far its plan led is not kept. A goal
+// that the search moved is then planned for once more.
+double Navigator::left_m(const Leg& leg) const {
+  if (leg.brakes) return 0.0;
+  const Trajectory& nominal = leg.committed.nominal().trajectory();
+  const double left_m =
+      (nominal.sample(nominal.duration_s()).position - pursuit_.goal.position_map).norm();
+  return left_m > config_.arrival_tolerance_m ? left_m : 0.0;
 }
 
 Memory Navigator::memory() const {

@@ -28,23 +28,35 @@ constexpr double kUrgent_s = 0.3;
 constexpr double kToTracker_s = 0.03;
 constexpr double kSameState = 1e-6;  // [m], [m/s], [m/s^2]
 
-// [ns] when a commit leaves its nominal part, or ends
-std::int64_t stop_ns(const CommittedTrajectory& c) {
-  const double after_s = c.stop() ? c.stop()->after_s : c.nominal().duration_s();
-  return c.start_time_ns() + to_ns(after_s);
+// [s] from full speed to rest
+double braking_s(const Limits& limits) {
+  const double ramp_s = limits.j_max_m_s3 > 0.0 ? limits.a_max_m_s2 / limits.j_max_m_s3 : 0.0;
+  return limits.v_max_m_s / limits.a_max_m_s2 + ramp_s;
 }
 
-std::int64_t arrival_ns(const CommittedTrajectory& c) {
-  return c.start_time_ns() + to_ns(c.nominal().duration_s());
+// [ns] when a leg leaves its nominal part, ends, or begins to brake for its horizon
+std::int64_t stop_ns(const Leg& leg) {
+  const CertifiedTrajectory& nominal = leg.committed.nominal();
+  double after_s = nominal.duration_s();
+  if (leg.beyond_m > 0.0) after_s -= braking_s(nominal.limits());
+  if (leg.committed.stop()) after_s = std::min(after_s, leg.committed.stop()->after_s);
+  return leg.start_ns() + to_ns(after_s);
+}
+
+// [ns] when its plan gets to the goal; beyond its horizon at full speed
+std::int64_t arrival_ns(const Leg& leg) {
+  const CertifiedTrajectory& nominal = leg.committed.nominal();
+  const double beyond_s = leg.beyond_m / nominal.limits().v_max_m_s;
+  return leg.start_ns() + to_ns(nominal.duration_s() + beyond_s);
 }
 
 }  // namespace
 
-// What is flown leads to the goal, but will stop before it unless more is seen.
+// What is flown leads to the goal, but will stop before it unless more is seen, or planned.
 bool Navigator::approaches() const {
   const Leg* leg = schedule_.last();
   return space_.asks_for_known() && state_ == State::flying && !pursuit_.open && leg != nullptr &&
-         !leg->brakes && leg->committed.stop().has_value();
+         !leg->brakes && (leg->committed.stop() || leg->beyond_m > 0.0);
 }
 
 // @return trajectory_blocked: no stop fits, or from rest none that leads anywhere
@@ -71,6 +83,7 @@ Status Navigator::add_stop(Commitment& candidate, bool from_rest) const {
 void Navigator::move_stop(std::int64_t now_ns) {
   if (!approaches()) return;
   const CommittedTrajectory& flown = schedule_.last()->committed;
+  if (!flown.stop()) return;
   const std::int64_t from_ns =
       std::max(now_ns + to_ns(config_.commit_lead_s), flown.start_time_ns());
   const double from_s = double(from_ns - flown.start_time_ns()) * 1e-9;
@@ -78,16 +91,41 @@ void Navigator::move_stop(std::int64_t now_ns) {
   auto later = latest_stop(flown.nominal(), space_, from_s);
   if (!later) return;
   if (*later && (*later)->after_s < flown.stop()->after_s + kLaterStop_s) return;
+  commit_stop(*std::move(later));
+}
+
+// An obstacle was found before what is flown stops: it goes on as far as it is free, as the tracker
+// does by itself. @return whether a stop fits
+bool Navigator::stop_sooner(std::int64_t now_ns) {
+  if (!approaches()) return false;
+  const CommittedTrajectory& flown = schedule_.last()->committed;
+  if (!flown.stop()) return false;
+  const std::int64_t from_ns = std::max(now_ns, flown.start_time_ns());
+  const double from_s = double(from_ns - flown.start_time_ns()) * 1e-9;
+  if (from_s >= flown.stop()->after_s) return false;
+  auto sooner = latest_stop(flown.nominal(), space_, from_s);
+  if (!sooner || !*sooner) return false;
+  commit_stop(*std::move(sooner));
+  // Another plan is needed at once: the one that is awaited does not know of the obstacle.
+  if (open_ && open_->improves) drop_open();
+  improve_ns_ = now_ns;
+  return true;
+}
+
+// The nominal part that is flown, with another stop part.
+void Navigator::commit_stop(std::optional<StopPart> stop) {
+  const Leg& leg = *schedule_.last();
+  const CommittedTrajectory& flown = leg.committed;
   auto committed = CommittedTrajectory::make({.id = next_id_++,
                                               .nominal = flown.nominal(),
-                                              .stop = *std::move(later),
+                                              .stop = std::move(stop),
                                               .start_time_ns = flown.start_time_ns(),
                                               .map_version = map()->version,
                                               .yaw_rad = flown.yaw_rad(),
                                               .yaw_curve = flown.yaw_curve()});
   if (!committed) return;
   orders_.push_back(Commit{*committed, 0, flown.id()});
-  schedule_.add({.committed = *std::move(committed), .continues = true});
+  schedule_.add({.committed = *std::move(committed), .beyond_m = leg.beyond_m, .continues = true});
 }
 
 double Navigator::improvement_lead_s() const {
@@ -109,12 +147,25 @@ void Navigator::improve(std::int64_t now_ns) {
   open_->improves = true;
 }
 
+// At once, and not when the next plan is due. A plan that is awaited, and was asked for before this
+// map came, is superseded; but not twice in a row, so that maps that come faster than plans do not
+// keep all of them from being made.
+void Navigator::improve_by_new_map(std::int64_t now_ns) {
+  if (open_ && open_->improves && !pending_ && !superseded_by_map_) {
+    drop_open();
+    superseded_by_map_ = true;
+  }
+  if (!open_) improve_ns_ = now_ns;
+  improve(now_ns);
+}
+
 void Navigator::take_improvement(Commitment candidate, std::uint64_t number, std::int64_t now_ns) {
   const Open asked = *std::exchange(open_, {});
+  superseded_by_map_ = false;
   latency_s_ =
       std::clamp(double(now_ns - asked.asked_ns) * 1e-9, 0.9 * latency_s_, config_.replan_lead_s);
   const PlanRequest& request = asked.request;
-  if (auto status = check_answer(candidate, request, asked.goal_moved_m); !status) {
+  if (auto status = check_answer(candidate, request, asked.shortfall); !status) {
     orders_.push_back(Complaint{request.id, status.error()});
     return;
   }
@@ -127,21 +178,23 @@ void Navigator::take_improvement(Commitment candidate, std::uint64_t number, std
   if (!add_stop(candidate, false)) return;
   auto committed = CommittedTrajectory::make(std::move(candidate));
   if (!committed || !check_against(space_, *committed, 0.0)) return;
-  if (!is_better(*committed, now_ns)) return;
+  const double beyond_m = asked.shortfall.beyond_m;
+  if (!is_better({.committed = *committed, .beyond_m = beyond_m}, now_ns)) return;
   newest_id_ = request.id;
-  commit(*std::move(committed), number, now_ns);
+  commit(*std::move(committed), beyond_m, number, now_ns);
 }
 
 // A plan that is hardly better is not worth the change: two that are as good would alternate.
-bool Navigator::is_better(const CommittedTrajectory& other, std::int64_t now_ns) const {
-  const CommittedTrajectory& flown = schedule_.last()->committed;
-  const double from_s = double(now_ns - flown.start_time_ns()) * 1e-9;
-  const Trajectory& nominal = flown.nominal().trajectory();
+bool Navigator::is_better(const Leg& other, std::int64_t now_ns) const {
+  const Leg& flown = *schedule_.last();
+  const double from_s = double(now_ns - flown.start_ns()) * 1e-9;
+  const Trajectory& nominal = flown.committed.nominal().trajectory();
   const bool dead = find_obstruction(*map(), nominal, from_s, nominal.duration_s()).has_value();
   const double later_stop_s = double(stop_ns(other) - stop_ns(flown)) * 1e-9;
   const double sooner_s = double(arrival_ns(flown) - arrival_ns(other)) * 1e-9;
   const double left_s = double(arrival_ns(flown) - now_ns) * 1e-9;
-  if (dead || (!other.stop() && sooner_s > -kSooner_s)) return true;
+  const bool arrives = !other.committed.stop() && other.beyond_m == 0.0;
+  if (dead || (arrives && sooner_s > -kSooner_s)) return true;
   const double soon_s = improvement_lead_s() + kUrgent_s;
   if (double(stop_ns(flown) - now_ns) * 1e-9 < soon_s) return later_stop_s > kLaterStop_s;
   if (later_stop_s > kMuchLaterStop_s && sooner_s > -kSooner_s) return true;

@@ -10,6 +10,7 @@ std::int64_t Leg::end_ns() const {
 }
 
 bool Leg::stops_early(double tolerance_m) const {
+  if (beyond_m > 0.0) return true;
   if (!committed.stop()) return false;
   const Trajectory& nominal = committed.nominal().trajectory();
   return (at(end_ns()).position - nominal.sample(nominal.duration_s()).position).norm() >

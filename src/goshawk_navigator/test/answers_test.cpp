@@ -67,7 +67,7 @@ TEST(Answers, AGoalThatTheSearchMovedIsFlownToAndSaid) {
   h.goal(kGoal);
   PlanRequest moved = h.plans[0];
   moved.goal.position.y() += 0.2;
-  h.navigator.on_report(moved.id, StageRole::path_search, ok(), h.now, 0.2);
+  h.navigator.on_report(moved.id, StageRole::path_search, ok(), h.now, {.goal_moved_m = 0.2});
   h.navigator.on_trajectory(h.solve(moved), 1, h.now);
   h.take();
   ASSERT_EQ(h.commits.size(), 1u);

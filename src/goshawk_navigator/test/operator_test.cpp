@@ -209,7 +209,7 @@ TEST(Operator, ALandingThatIsRefusedInFlightChangesNothing) {
   Harness h = in_fast_flight();
   VoxelGrid grid = free_map(6);
   grid.raw = BitGrid(grid.geometry.size, true, false);
-  grid.grown.set({103, 100, 101}, true);  // in the reserve of plans: 3 m < x < 4 m
+  grid.grown.set({102, 100, 101}, true);  // in the reserve of plans: 2 m < x < 3 m
   grid.unknown_is_occupied = false;
   grid.known = BitGrid(grid.geometry.size, false, true);
   h.map(std::move(grid));

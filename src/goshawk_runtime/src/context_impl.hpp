@@ -45,7 +45,7 @@ class DiscoveryListener : public dds::DomainParticipantListener {
   std::shared_ptr<wire::Handshakes> handshakes{};  // null without DDS Security
 
  private:
-  void tell_handshakes(const rtps::ParticipantDiscoveryInfo& found) const;
+  bool tell_handshakes(const rtps::ParticipantDiscoveryInfo& found) const;
 
   mutable std::mutex mutex_;
   std::map<std::string, ParticipantInfo> participants_;

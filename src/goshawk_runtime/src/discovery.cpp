@@ -67,14 +67,14 @@ EndpointInfo endpoint(const Info& info, bool writer) {
 
 void DiscoveryListener::on_participant_discovery(dds::DomainParticipant*,
                                                  rtps::ParticipantDiscoveryInfo&& info) {
-  if (handshakes) tell_handshakes(info);
+  const bool took_leave = handshakes && tell_handshakes(info);
   const std::string key = text(info.info.m_guid.guidPrefix);
   const std::lock_guard lock(mutex_);
   if (info.status == rtps::ParticipantDiscoveryInfo::REMOVED_PARTICIPANT ||
       info.status == rtps::ParticipantDiscoveryInfo::DROPPED_PARTICIPANT) {
     participants_.erase(key);
     silent_since_.erase(key);
-    if (info.status == rtps::ParticipantDiscoveryInfo::DROPPED_PARTICIPANT) {
+    if (info.status == rtps::ParticipantDiscoveryInfo::DROPPED_PARTICIPANT && !took_leave) {
       if (silent_since_.size() >= kMostSilent) silent_since_.erase(silent_since_.begin());
       silent_since_[key] = std::chrono::steady_clock::now();
     }
@@ -88,15 +88,17 @@ void DiscoveryListener::on_participant_discovery(dds::DomainParticipant*,
 }
 
 // Fast DDS sends nothing to a participant before this has returned.
-void DiscoveryListener::tell_handshakes(const rtps::ParticipantDiscoveryInfo& found) const {
+// @return whether it has left, and not just fallen silent
+bool DiscoveryListener::tell_handshakes(const rtps::ParticipantDiscoveryInfo& found) const {
   const Participant other = participant_of(found.info.m_guid.guidPrefix);
-  if (found.status == rtps::ParticipantDiscoveryInfo::CHANGED_QOS_PARTICIPANT) return;
+  if (found.status == rtps::ParticipantDiscoveryInfo::CHANGED_QOS_PARTICIPANT) return false;
   if (found.status != rtps::ParticipantDiscoveryInfo::DISCOVERED_PARTICIPANT) {
     return handshakes->left(other);
   }
   wire::Handshakes::Locators at;
   for (const auto& locator : found.info.metatraffic_locators.unicast) at.push_back(locator);
   handshakes->discovered(other, at);
+  return false;
 }
 
 void DiscoveryListener::onParticipantAuthentication(dds::DomainParticipant*,

@@ -64,6 +64,7 @@ OneWriter& WriterGuard::chooser(std::uint8_t part) {
 // discovery tells.
 bool WriterGuard::lives(const Participant& writer) const {
   if (writer == own_) return true;
+  if (context_.senders->has_ended(writer)) return false;
   const auto port = context_.senders->port_of(writer);
   if (writers_.is_matched(writer)) return !port || wire::is_taken(*port);
   return port && wire::is_taken(*port) && context_.listener.fell_silent(writer, kStopped_s);

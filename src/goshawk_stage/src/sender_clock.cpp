@@ -9,11 +9,12 @@
 namespace goshawk::stage {
 namespace {
 
-constexpr std::size_t kWindow = 8;                  // messages
-constexpr std::int64_t kEarly_ns = 20'000'000;      // time servers agree better than this
-constexpr std::int64_t kLate_ns = 100'000'000;      // a message may be as long on its way
-constexpr std::int64_t kSet_ns = 1'000'000'000;     // no message is late by as much: a clock was set
-constexpr std::int64_t kMost_ns = 10'000'000'000;   // compensated: more is a clock nobody has set
+constexpr std::size_t kWindow = 8;                 // messages
+constexpr std::int64_t kEarly_ns = 20'000'000;     // time servers agree better than this
+constexpr std::int64_t kLate_ns = 100'000'000;     // a message may be as long on its way
+constexpr std::int64_t kSet_ns = 1'000'000'000;    // no message is late by as much: a clock was set
+constexpr std::int64_t kSteady_ns = 300'000'000;   // as long, nothing is late by the same
+constexpr std::int64_t kMost_ns = 10'000'000'000;  // compensated: more is a clock nobody has set
 
 bool agrees(std::int64_t age_ns) {
   return age_ns >= -kEarly_ns && age_ns <= kLate_ns;
@@ -30,6 +31,21 @@ void SenderClock::hear(std::int64_t stamp_ns, std::int64_t now_ns) {
   }
   heard_.push_back({stamp_ns, now_ns});
   if (heard_.size() > kWindow) heard_.pop_front();
+  forget_other_clock();
+}
+
+// A small step back looks like lateness, but only for one message.
+void SenderClock::forget_other_clock() {
+  const Heard& newest = heard_.back();
+  const auto later_ns = [&](const Heard& h) {  // by how much the newest is later than this one
+    return (newest.now_ns - newest.stamp_ns) - (h.now_ns - h.stamp_ns);
+  };
+  const auto other = std::find_if(heard_.rbegin(), heard_.rend(), [&](const Heard& h) {
+    return std::abs(later_ns(h)) > kEarly_ns;
+  });
+  if (other == heard_.rend() || later_ns(*other) <= kLate_ns) return;
+  const auto first = other.base();  // of those that tell the newest one's clock
+  if (newest.now_ns - first->now_ns >= kSteady_ns) heard_.erase(heard_.begin(), first);
 }
 
 std::int64_t SenderClock::skew_ns(std::int64_t wall_ns, std::int64_t now_ns,
@@ -44,11 +60,12 @@ std::int64_t SenderClock::skew_ns(std::int64_t wall_ns, std::int64_t now_ns,
 
 Status SenderClock::check(std::int64_t skew_ns, const char* sender) {
   if (std::abs(skew_ns) <= kMost_ns) return success();
-  return fail(ErrorCode::clock_set,
-              fmt::format("clock skew: the clock of {}'s host is {:.3g} s {} this host's, more than "
-                          "the {:.3g} s that are compensated: set both clocks (chrony, timedatectl)",
-                          sender, std::abs(double(skew_ns)) * 1e-9,
-                          skew_ns > 0 ? "ahead of" : "behind", double(kMost_ns) * 1e-9));
+  return fail(
+      ErrorCode::clock_set,
+      fmt::format("clock skew: the clock of {}'s host is {:.3g} s {} this host's, more than "
+                  "the {:.3g} s that are compensated: set both clocks (chrony, timedatectl)",
+                  sender, std::abs(double(skew_ns)) * 1e-9, skew_ns > 0 ? "ahead of" : "behind",
+                  double(kMost_ns) * 1e-9));
 }
 
 }  // namespace goshawk::stage

@@ -9,7 +9,8 @@ namespace {
 
 constexpr std::int64_t kOneMs = 1'000'000;
 constexpr std::int64_t kOneSecond = 1000 * kOneMs;
-constexpr std::int64_t kWallClock = 1'700'000'000 * kOneSecond;  // own wall clock at monotonic time 0
+constexpr std::int64_t kWallClock =
+    1'700'000'000 * kOneSecond;  // own wall clock at monotonic time 0
 
 /// A sender whose wall clock is skew_ns ahead, over a way that takes delay_ns.
 struct ClockPair {
@@ -88,7 +89,43 @@ TEST(SenderClock, AMessageWhoseOwnStampAgreesIsDatedByIt) {
   for (int k = 0; k < 8; ++k) pair.send(0, 1 * kOneMs);
   pair.wall_at_0_ns -= 5 * kOneSecond;  // of all hosts; the next regular message is still to come
   EXPECT_EQ(pair.skew_ns(pair.wall_at_0_ns + pair.now_ns - 2 * kOneMs), 0);
-  EXPECT_EQ(pair.skew_ns(pair.wall_at_0_ns + pair.now_ns + 4 * kOneSecond), 5 * kOneSecond - kOneMs);
+  EXPECT_EQ(pair.skew_ns(pair.wall_at_0_ns + pair.now_ns + 4 * kOneSecond),
+            5 * kOneSecond - kOneMs);
+}
+
+// It looks like lateness at first.
+TEST(SenderClock, FollowsASmallStepBackWithTheSecondMessageAfterIt) {
+  Random random(3);
+  for (const std::int64_t back : {150 * kOneMs, 500 * kOneMs, 990 * kOneMs}) {
+    ClockPair pair;
+    for (int k = 0; k < 8; ++k) pair.send(0, std::int64_t(random.uniform(0.1, 2.0) * kOneMs));
+    pair.send(-back, 1 * kOneMs);
+    EXPECT_EQ(pair.skew_ns(), 0) << "it may have been late";
+    pair.send(-back, 1 * kOneMs);
+    EXPECT_EQ(pair.skew_ns(), -back - kOneMs);
+  }
+}
+
+TEST(SenderClock, FollowsAStepForwardWithTheFirstMessageAfterIt) {
+  for (const std::int64_t ahead : {150 * kOneMs, 500 * kOneMs, 3 * kOneSecond}) {
+    ClockPair pair;
+    for (int k = 0; k < 8; ++k) pair.send(0, 1 * kOneMs);
+    pair.send(ahead, 1 * kOneMs);
+    EXPECT_EQ(pair.skew_ns(), ahead - kOneMs);
+  }
+}
+
+// A burst waits in one queue, so that all of it is late by the same.
+TEST(SenderClock, LateMessagesOfOneMomentChangeNothing) {
+  ClockPair pair;
+  for (int k = 0; k < 4; ++k) pair.send(3 * kOneSecond, 10 * kOneMs);
+  const std::int64_t before = pair.skew_ns();
+  pair.send(3 * kOneSecond, 400 * kOneMs);
+  for (int k = 0; k < 3; ++k) {
+    pair.now_ns += 50 * kOneMs;
+    pair.clock.hear(pair.true_wall_ns() - 400 * kOneMs + 3 * kOneSecond, pair.now_ns);
+  }
+  EXPECT_EQ(pair.skew_ns(), before);
 }
 
 TEST(SenderClock, NamesASkewThatIsTooLarge) {

@@ -144,7 +144,7 @@ REPORTING = [stage for stage in OUTPUTS if stage not in ("navigator", PLANT)]
 MEASURED = ("path", "corridor", "trajectory")  # hold compute_ns, the time that an answer took
 ALL_INPUTS = ["goal_pose", "odom", "odom_true", "command", "fallback_stop", "octomap_binary",
               "cloud_in", "map/*", "plan_request", "path", "corridor", "trajectory",
-              "stage_report", "committed_trajectory", "tracking_state", "navigator_alive"]
+              "stage_report", "committed_trajectory", "tracking_state", "navigator_alive", "vehicle_status"]
 RECORDER = "goshawk_record"
 FLIGHT_S = 7.5  # of simulated time
 WEATHER = {"gust_deviation_m_s": 0.5, "position_noise_m": 0.002, "odometry_delay_s": 0.008}

@@ -8,7 +8,7 @@ import sys
 import time
 
 import harness
-from harness import SOURCE, until
+from harness import SOURCE, SystemTest, until
 from stack import PLACES, StackTest, goal_message
 
 sys.path.insert(0, str(SOURCE / "src" / "goshawk_bringup" / "scripts"))
@@ -21,7 +21,8 @@ NODES = {**{name: name for name in topic_rights.STAGES
 # Opened only if they are needed: the map before a landing, the truth beside a sensor's error, the
 # clouds and images of Goshawk's own sensors.
 LATER = {"tracker": set(topic_rights.MAP), "vehicle": {*topic_rights.MAP, "odom_true"},
-         "map_server": {"points", "depth/image_rect_raw", "depth/camera_info"}}
+         "map_server": {"points", "depth/image_rect_raw", "depth/camera_info"},
+         "navigator": {"bench/unheard_requests"}}
 
 
 class SecuredStages(StackTest):
@@ -168,6 +169,26 @@ class SecuredFlight(StackTest):
 
     def test_8_nothing_was_touched(self):
         self.check_untouched()
+
+
+class SecuredBench(SystemTest):
+    def test_plans_are_timed_with_and_without_security(self):
+        keys = self.sandbox.folder / "keys"
+        made = self.sandbox.goshawk("secure", "init", keys, "--json")
+        self.assertEqual(made.status, 0, str(made))
+        told = self.sandbox.goshawk("bench", "plan", "--secure", keys, "-n", "3", "--json",
+                                    timeout_s=120, env={"ROS_DOMAIN_ID": ""})
+        self.assertEqual(told.status, 0, str(told))
+        result = json.loads(told.out)
+        for times in (result, result["secured"]):
+            self.assertEqual(times["plans"], 3)
+            self.assertGreater(times["total"]["p50_us"], 0.0)
+            self.assertGreater(times["processor_share"], 0.0)
+
+    def test_a_folder_without_the_certificate_is_refused_by_name(self):
+        told = self.sandbox.goshawk("bench", "plan", "--secure", self.sandbox.folder, "--json")
+        self.assertEqual(told.status, 1, str(told))
+        self.assertIn("benchmark/profile.xml is missing", json.loads(told.out)["message"])
 
 
 if __name__ == "__main__":

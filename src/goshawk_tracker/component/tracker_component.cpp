@@ -41,6 +41,21 @@ std::uint8_t to_msg(Mode mode) {
   return std::uint8_t(mode);
 }
 
+Control control_of(const msg::VehicleStatus& m) {
+  namespace constants = msg::VehicleStatus_Constants;
+  if (!m.armed()) return Control::nobody;
+  switch (m.control()) {
+    case constants::CONTROL_GOSHAWK:
+      return Control::goshawk;
+    case constants::CONTROL_PILOT:
+      return Control::pilot;
+    case constants::CONTROL_AUTOPILOT:
+      return Control::autopilot;
+    default:
+      return Control::nobody;
+  }
+}
+
 // Only whose verdicts count must be one process.
 std::uint8_t judging_stage(const msg::StageReport& m) {
   const bool judges = conversions::stage_role_of(m.stage()) == StageRole::flight_check;
@@ -87,9 +102,10 @@ class StepStatistics {
   double longest_gap_ms_ = 0.0;
 };
 
-/// committed_trajectory, odom, navigator_alive, map/voxels, stage_report of flight_check ->
-/// command, fallback_stop, tracking_state. Counts on the monotonic clock: what others stamp with
-/// their wall clocks is brought to it once, when it arrives. Maps come in another thread.
+/// committed_trajectory, odom, vehicle_status, navigator_alive, map/voxels, stage_report of
+/// flight_check -> command, fallback_stop, tracking_state. Counts on the monotonic clock: what
+/// others stamp with their wall clocks is brought to it once, when it arrives. Maps come in another
+/// thread.
 class TrackerComponent : public Component {
  public:
   explicit TrackerComponent(Node& node)
@@ -104,6 +120,14 @@ class TrackerComponent : public Component {
         commands_(node.advertise<msg::AttitudeSetpoint>("command", Qos::best_effort())),
         fallbacks_(node.advertise<msg::FallbackStop>("fallback_stop", Qos::best_effort())),
         states_(node.advertise<msg::TrackingState>("tracking_state", Qos::best_effort())) {
+    // Before the commits of the same moment, which it dates.
+    node.subscribe<msg::NavigatorState>(
+        "navigator_alive", Qos::best_effort(),
+        [this](const msg::NavigatorState& m, const MessageInfo&) {
+          tracker_.heard_navigator(node_.monotonic_ns());
+          navigator_clock_.hear(conversions::to_ns(m.header().stamp()), node_.monotonic_ns());
+        },
+        Writers::one("navigator"));
     node.subscribe<msg::CommittedTrajectory>(
         "committed_trajectory", Qos::latched(),
         [this](const msg::CommittedTrajectory& m, const MessageInfo& info) { on_commit(m, info); },
@@ -112,13 +136,12 @@ class TrackerComponent : public Component {
         "odom", Qos::best_effort(),
         [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) { on_odometry(m); },
         Writers::one("odom"));
-    node.subscribe<msg::NavigatorState>(
-        "navigator_alive", Qos::best_effort(),
-        [this](const msg::NavigatorState& m, const MessageInfo&) {
-          tracker_.heard_navigator(node_.monotonic_ns());
-          navigator_clock_.hear(conversions::to_ns(m.header().stamp()), node_.monotonic_ns());
+    node.subscribe<msg::VehicleStatus>(
+        "vehicle_status", Qos::best_effort(),
+        [this](const msg::VehicleStatus& m, const MessageInfo&) {
+          tracker_.heard_vehicle(control_of(m), node_.monotonic_ns());
         },
-        Writers::one("navigator"));
+        Writers::one("vehicle_status"));
     if (config_.second_opinion != SecondOpinion::off) {
       node.subscribe<msg::StageReport>(
           "stage_report", Qos::reliable_last(50),

@@ -14,6 +14,7 @@ namespace {
 constexpr double kSearchBefore_s = 0.2;
 constexpr double kSearchAfter_s = 1.0;
 constexpr double kContradiction_s = 0.5;
+constexpr double kControlHolds_s = 1.0;  // what the vehicle said of who flies it
 
 }  // namespace
 
@@ -43,7 +44,7 @@ void Tracker::watch_odometry(std::int64_t now_ns) {
   if (age_s <= config_.odometry_timeout_s) return;
   whereabouts_lost_ = true;
   lose(fail(ErrorCode::tracking_lost,
-            "no odometry for " + number(age_s) + " s, more than " +
+            "no valid odometry for " + number(age_s) + " s, more than " +
                 number(config_.odometry_timeout_s) +
                 " s: no command goes out, the vehicle brakes by itself; is its source alive?"),
        stamp_ns_);
@@ -60,7 +61,7 @@ double Tracker::jump_m(const RigidBodyState& state, std::int64_t stamp_ns) const
 void Tracker::stop_after_jump(double jump_m, std::int64_t now_ns) {
   const Vec3 acceleration = reference_.at(stamp_ns_).acceleration;
   lose(fail(ErrorCode::tracking_lost,
-            "odometry jumped by " + number(jump_m) + " m; stopping where it says to be now"),
+            "odometry jumped by " + number(jump_m) + " m; stopping at the new position"),
        now_ns);
   reference_ = Reference::hold(state_.position_map);
   forget_errors();
@@ -80,6 +81,36 @@ Status Tracker::check_agreement(std::int64_t now_ns) const {
       ErrorCode::tracking_lost,
       "odometry jumps to and fro: no command goes out, the vehicle brakes by itself; do two "
       "programs publish it?");
+}
+
+void Tracker::heard_vehicle(Control control, std::int64_t now_ns) {
+  if (!within_bound(now_ns)) return;
+  const bool returns = control == Control::goshawk && !check_control(now_ns);
+  control_ = control;
+  control_ns_ = now_ns;
+  if (!returns) return;
+  controller_.reset();  // what it learnt from a vehicle that others flew is wrong
+  if (error_m_ > config_.error_allowance_m) whereabouts_lost_ = true;
+}
+
+Status Tracker::check_control(std::int64_t now_ns) const {
+  if (seconds(control_ns_, now_ns) > kControlHolds_s) return success();
+  const auto not_flown = [](const char* why) {
+    return fail(ErrorCode::tracking_lost,
+                std::string("the vehicle does not fly the setpoints: ") + why);
+  };
+  switch (control_) {
+    case Control::goshawk:
+      return success();
+    case Control::autopilot:
+      return not_flown(
+          "its autopilot has control: none has reached it yet, or it is in another mode");
+    case Control::pilot:
+      return not_flown("its pilot has control");
+    case Control::nobody:
+      return not_flown("its motors are not armed");
+  }
+  throw std::logic_error("check_control() of no Control");
 }
 
 // Odometry is back, or tells another place.
@@ -125,10 +156,13 @@ void Tracker::watch_error(std::int64_t now_ns) {
   if (error_m_ <= config_.error_allowance_m) return;
   const bool stops_already = lost_.code != ErrorCode::ok && !reference_.follows();
   const bool follows = !stops_already && !landing_ && !reference_.at_rest(now_ns);
+  const std::string off = number(error_m_) +
+                          " m from where it should be, more than the allowance of " +
+                          number(config_.error_allowance_m) + " m";
+  const Status flown = check_control(now_ns);
   lose(fail(ErrorCode::tracking_lost,
-            "the vehicle is " + number(error_m_) +
-                " m from where it should be, more than the allowance of " +
-                number(config_.error_allowance_m) + " m: stopping; plan again from there"),
+            flown ? "the vehicle is " + off + ": stopping; plan again from there"
+                  : flown.error().message + ", and it is " + off),
        now_ns);
   if (follows) stop_where_it_is(reference.acceleration, stamp_ns_, now_ns);
 }

@@ -63,6 +63,10 @@ Status Tracker::reconfigure(const Config& config) {
 
 Status Tracker::accept(CommittedTrajectory committed, std::int64_t start_ns, std::int64_t now_ns) {
   if (auto status = admit(committed, config_); !status) return status;
+  if (const Status status = check_control(now_ns); !status) {
+    return fail(status.code(),
+                fmt::format("trajectory {} refused: {}", committed.id(), status.error().message));
+  }
   auto candidate = Reference::follow(
       std::make_shared<const CommittedTrajectory>(std::move(committed)), start_ns);
   if (auto status = check_start(candidate, now_ns); !status) return status;

@@ -98,7 +98,7 @@ TEST(FailuresInFlight, WithoutOdometryTheTrackerSaysSoAndTheVehicleHoldsThenLand
   loop.run_until(loop.vehicle.time_ns() + 150'000'000);
   auto status = loop.tracker.status();
   EXPECT_EQ(status.fault.code, ErrorCode::tracking_lost);
-  EXPECT_NE(status.fault.message.find("no odometry"), std::string::npos);
+  EXPECT_NE(status.fault.message.find("no valid odometry"), std::string::npos);
   EXPECT_EQ(status.lost_trajectory_id, 1U);
   EXPECT_EQ(status.mode, Mode::brake);
   loop.run_until(loop.vehicle.time_ns() + 5 * kSecond);

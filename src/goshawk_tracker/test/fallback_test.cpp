@@ -139,17 +139,6 @@ TEST_P(Kills, InWindTouchNothing) {
   std::printf("in wind: at most %.4f m off the path\n", off_path_m);
 }
 
-// What the tests above would see if the stop did nothing.
-TEST_P(Kills, WithoutAFallbackStopLeaveThePathByMoreThanTheMargin) {
-  simulator::Config vehicle;
-  vehicle.fallback_tolerance_m = 0.0;
-  double off_path_m = 0.0;
-  for (std::int64_t t = kSecond; t < end_ns(); t += 260'000'000) {
-    off_path_m = std::max(off_path_m, kill_at(t, 1.0, vehicle).off_path_m);
-  }
-  EXPECT_GT(off_path_m, 4.0 * kMargin_m);
-}
-
 INSTANTIATE_TEST_SUITE_P(Controllers, Kills, testing::Values("pd", "geometric"),
                          [](const auto& each) { return std::string(each.param); });
 

@@ -28,8 +28,7 @@ inline constexpr const char* kPlanningStages[] = {"path_search", "corridor_build
 /// Asks for plans as the navigator would, one after another, and times the answers.
 class PlanTimer {
  public:
-  PlanTimer(runtime::Node& node, const Vec3& start_map, const Vec3& goal_map,
-            const Limits& limits);
+  PlanTimer(runtime::Node& node, const Vec3& start_map, const Vec3& goal_map, const Limits& limits);
 
   bool stages_ready() const;
 

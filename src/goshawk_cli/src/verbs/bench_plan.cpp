@@ -1,29 +1,31 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <functional>
 
-#include "bench/plan_timer.hpp"
-#include "flight/child_verb.hpp"
-#include "goshawk/map_server/octree.hpp"
-#include "planning/planning.hpp"
-#include "process.hpp"
+#include "bench/plan_child.hpp"
+#include "bench/plan_rig.hpp"
 #include "values.hpp"
 #include "verbs/bench.hpp"
 
 namespace goshawk::cli {
 namespace {
 
-constexpr std::size_t kWarmUp = 10;  // plans that do not count
-constexpr int kMostFailures = 10;    // the map may not be there for the first plans
-constexpr double kStagesReady_s = 30.0;
-constexpr double kPlan_s = 2.0;
+constexpr int kWarmUp = 10;  // plans that do not count
 
 struct BenchOptions {
-  MapOptions map;
-  Vec3 start_map = Vec3(3.0, 0.0, 1.0);
-  Vec3 goal_map = Vec3(3.0, 8.0, 2.0);
-  std::string launch = "flight";
+  PlanRigOptions rig;
   int count = 200;
+};
+
+/// Whom to ask for plans, and what came of it.
+struct Asked {
+  std::function<Result<PlanSample>()> sample;
+  std::function<Result<double>()> processor_s;
+  std::vector<PlanSample> samples;
+  double processor_share = 0.0;  // of one core, by all processes of the flight
 };
 
 double percentile_us(std::vector<std::int64_t> values, double share) {
@@ -52,30 +54,35 @@ Json stage_json(const std::vector<PlanSample>& samples, const std::string& name)
   return {{"name", name}, {"compute", percentiles(compute)}, {"wire", percentiles(wire)}};
 }
 
-Json result_json(const std::vector<PlanSample>& samples, const BenchOptions& o) {
+Json times_json(const Asked& asked) {
   std::vector<std::int64_t> totals;
   std::vector<std::int64_t> wires;
-  for (const auto& s : samples) {
+  for (const auto& s : asked.samples) {
     std::int64_t compute_ns = 0;
     for (const auto& [name, times] : s.stages) compute_ns += times.compute_ns;
     totals.push_back(s.total_ns);
     wires.push_back(s.total_ns - compute_ns);
   }
   Json stages = Json::array();
-  for (const char* name : kPlanningStages) stages.push_back(stage_json(samples, name));
-  stages.push_back(stage_json(samples, "reply"));
+  for (const char* name : kPlanningStages) stages.push_back(stage_json(asked.samples, name));
+  stages.push_back(stage_json(asked.samples, "reply"));
+  return {{"plans", asked.samples.size()},
+          {"total", percentiles(totals)},
+          {"not_compute", percentiles(wires)},
+          {"stages", stages},
+          {"processor_share", asked.processor_share}};
+}
+
+/// @param secured nothing: not asked for
+Json result_json(const Asked& plain, const std::optional<Asked>& secured, const BenchOptions& o) {
   Json object = ok_json();
-  object.update({{"launch", o.launch},
-                 {"plans", samples.size()},
-                 {"total", percentiles(totals)},
-                 {"not_compute", percentiles(wires)},
-                 {"stages", stages}});
+  object["launch"] = o.rig.launch;
+  object.update(times_json(plain));
+  object["secured"] = secured ? times_json(*secured) : Json(nullptr);
   return object;
 }
 
-void print(const Json& result) {
-  fmt::print("{} plans, launch file {}\n", result["plans"].get<std::size_t>(),
-             result["launch"].get<std::string>());
+void print_times(const Json& result) {
   fmt::print("{:<22} {:>12} {:>12} {:>12} {:>12}\n", "[us]", "compute p50", "compute p99",
              "wire p50", "wire p99");
   const auto us = [](const Json& times, const char* key) { return times[key].get<double>(); };
@@ -87,86 +94,88 @@ void print(const Json& result) {
   fmt::print("{:<22} p50 {:.1f} us, p99 {:.1f} us, of which not computing p50 {:.1f} us\n",
              "whole plan", us(result["total"], "p50_us"), us(result["total"], "p99_us"),
              us(result["not_compute"], "p50_us"));
+  fmt::print("{:<22} {:.1f} % of a core\n", "all processes",
+             100.0 * result["processor_share"].get<double>());
 }
 
-/// The map server's parameters, and a made world if they name no map.
-Result<std::vector<std::string>> launch_arguments(const BenchOptions& o,
-                                                  const std::string& folder) {
-  auto args = o.map.ros_args();
-  const auto config = PlanningConfig::read(args);
-  if (!config) return config.error();
-  if (config->needs_world()) {
-    const auto map = load_map(*config);
-    if (!map) return map.error();
-    args.overrides.push_back({"map_server", "map_file", folder + "/world.bt"});
-    if (auto saved = map_server::save_voxels(map->raw.geometry, map->raw.occupied, map->raw.known,
-                                             args.overrides.back().value);
-        !saved) {
-      return saved.error();
+void print(const Json& result) {
+  fmt::print("{} plans, launch file {}\n", result["plans"].get<std::size_t>(),
+             result["launch"].get<std::string>());
+  print_times(result);
+  if (result["secured"].is_null()) return;
+  fmt::print("\nwith DDS Security, in turns with the others\n");
+  print_times(result["secured"]);
+}
+
+Status ask_each(std::vector<Asked*>& all, int count) {
+  for (int k = 0; k < count; ++k) {
+    for (Asked* asked : all) {
+      auto sample = asked->sample();
+      if (!sample) return sample.error();
+      asked->samples.push_back(*std::move(sample));
     }
   }
-  std::vector<std::string> arguments{o.launch, "--log-dir", folder, "--ros-args"};
-  // Stages take requests from one process alone: this one, not the navigator.
-  arguments.insert(arguments.end(), {"-r", "navigator:plan_request:=bench/unheard_requests"});
-  for (const auto& file : args.params_files) {
-    arguments.insert(arguments.end(), {"--params-file", file});
-  }
-  for (const auto& p : args.overrides) {
-    arguments.insert(arguments.end(), {"-p", p.node + ":" + p.name + ":=" + p.value});
-  }
-  return arguments;
+  return success();
 }
 
-Result<std::vector<PlanSample>> take_samples(PlanTimer& timer, runtime::Node& node, int count) {
-  std::vector<PlanSample> samples;
-  for (int failures = 0; samples.size() < std::size_t(count) + kWarmUp;) {
-    auto sample = timer.once(kPlan_s);
-    if (sample) {
-      samples.push_back(*std::move(sample));
-      node.spin_some(0.005);
-    } else if (++failures > kMostFailures) {
-      return sample.error();
-    } else {
-      node.spin_some(0.2);
-    }
+/// Takes the sum of what began and ended.
+Status count_processor(std::vector<Asked*>& all, double sign) {
+  for (Asked* asked : all) {
+    const auto used_s = asked->processor_s();
+    if (!used_s) return used_s.error();
+    asked->processor_share += sign * *used_s;
   }
-  samples.erase(samples.begin(), samples.begin() + kWarmUp);
-  return samples;
+  return success();
 }
 
-Result<std::vector<PlanSample>> measure(const BenchOptions& o) {
-  const auto domain = private_domain();
-  if (!domain) return domain.error();
-  const auto folder = make_log_folder("bench_plan");
-  if (!folder) return folder.error();
-  const auto arguments = launch_arguments(o, *folder);
-  if (!arguments) return arguments.error();
-  auto options = runtime::ContextOptions::from_environment();
-  options->domain = *domain;
-  auto context = runtime::Context::create(*options);
-  if (!context) return context.error();
-  runtime::Node node(**context, "goshawk_bench");
-  PlanTimer timer(node, o.start_map, o.goal_map, o.map.limits());
-  auto launch = start_launch(*arguments, *domain, *folder + "/launch.log");
-  if (!launch) return launch.error();
-  const std::int64_t end_ns = node.now_ns() + std::int64_t(kStagesReady_s * 1e9);
-  while (!timer.stages_ready() && node.now_ns() < end_ns) {
-    if (launch->ended()) return launch->failure();
-    node.spin_some(0.05);
+/// In turns, so that what else the machine does strikes all alike.
+Status measure(std::vector<Asked*> all, int count) {
+  if (auto status = ask_each(all, kWarmUp); !status) return status;
+  for (Asked* asked : all) asked->samples.clear();
+  const auto begin = std::chrono::steady_clock::now();
+  if (auto status = count_processor(all, -1.0); !status) return status;
+  if (auto status = ask_each(all, count); !status) return status;
+  if (auto status = count_processor(all, 1.0); !status) return status;
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+  for (Asked* asked : all) asked->processor_share /= took.count();
+  return success();
+}
+
+template <typename Rig>
+Asked ask(Rig& rig) {
+  return {.sample = [&rig] { return rig.sample(); },
+          .processor_s = [&rig] { return Result<double>(rig.processor_s()); },
+          .samples = {}};
+}
+
+Result<Json> run(const BenchOptions& o) {
+  std::optional<PlanChild> secured_rig;
+  if (!o.rig.secure.empty()) {
+    auto child = PlanChild::start(o.rig);
+    if (!child) return child.error();
+    secured_rig.emplace(*std::move(child));
+    unsetenv("FASTRTPS_DEFAULT_PROFILES_FILE");  // it may name a certificate
   }
-  if (!timer.stages_ready()) {
-    return fail(ErrorCode::stage_silent,
-                fmt::format("the stages did not report ready within {:g} s: see {}", kStagesReady_s,
-                            *folder));
+  auto plain_options = o.rig;
+  plain_options.secure.clear();
+  const auto rig = PlanRig::start(plain_options);
+  if (!rig) return rig.error();
+  Asked plain = ask(**rig);
+  std::optional<Asked> secured;
+  std::vector<Asked*> all{&plain};
+  if (secured_rig) {
+    if (auto status = secured_rig->ready(); !status) return status.error();
+    secured = ask(*secured_rig);
+    all.push_back(&*secured);
   }
-  return take_samples(timer, node, o.count);
+  if (auto status = measure(all, o.count); !status) return status.error();
+  return result_json(plain, secured, o);
 }
 
 int run_bench_plan(const BenchOptions& o, const Console& console) {
-  const auto samples = measure(o);
-  if (!samples) return console.failed(samples.error());
-  const Json result = result_json(*samples, o);
-  console.json() ? console.print(result) : print(result);
+  const auto result = run(o);
+  if (!result) return console.failed(result.error());
+  console.json() ? console.print(*result) : print(*result);
   return kDone;
 }
 
@@ -176,19 +185,22 @@ void add_bench_plan(const Verb& bench) {
   const Verb verb =
       bench.word("plan", "latency of whole plans over DDS, by stage: computing, and on the wire");
   auto o = std::make_shared<BenchOptions>();
-  add_map_options(verb, o->map);
-  add_point(verb, "--start", o->start_map, "[m] frame map");
-  add_point(verb, "--goal", o->goal_map, "[m] frame map");
-  auto* launch =
-      verb->add_option("--launch", o->launch, "flight (a process each) or flight_container (one)")
-          ->capture_default_str();
+  add_map_options(verb, o->rig.map);
+  add_point(verb, "--start", o->rig.start_map, "[m] frame map");
+  add_point(verb, "--goal", o->rig.goal_map, "[m] frame map");
+  auto* launch = verb->add_option("--launch", o->rig.launch,
+                                  "flight (a process each) or flight_container (one)")
+                     ->capture_default_str();
   verb.completes(launch, launch_files);
+  verb->add_option("--secure", o->rig.secure,
+                   "folder of goshawk secure init: also ask stages with DDS Security, in turns");
   verb->add_option("-n,--count", o->count, "plans")
       ->capture_default_str()
       ->check(CLI::Range(1, 1'000'000));
   verb->footer(
       "Examples:\n"
       "  goshawk bench plan\n"
+      "  goshawk bench plan --secure keys\n"
       "  goshawk bench plan --launch flight_container -n 1000 --json");
   verb.runs([o](const Console& console) { return run_bench_plan(*o, console); });
 }

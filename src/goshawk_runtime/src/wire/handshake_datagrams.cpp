@@ -12,9 +12,8 @@ namespace {
 
 using Prefix = SenderTable::Prefix;
 
-constexpr std::uint32_t kDiscoveryWriter = 0x000100c2, kDiscoveryReader = 0x000100c7;
+constexpr std::uint32_t kDiscoveryWriter = 0x000100c2;
 constexpr std::uint32_t kHandshakeWriter = 0x000201c3;
-constexpr std::uint32_t kParticipantEntity = 0x000001c1;
 constexpr std::size_t kGuidSize = 16;     // [byte]
 constexpr std::uint8_t kGreeting = 0xf7;  // of the submessages that are a vendor's own
 constexpr std::string_view kMark = "goshawk greeting";  // whole words of four bytes
@@ -30,9 +29,6 @@ class DatagramWriter {
   DatagramWriter& submessage(std::uint8_t kind, std::uint8_t flags, std::size_t size) {
     return u8(kind).u8(flags | 1U).number(size, 2);
   }
-  DatagramWriter& parameter(std::uint16_t id, std::size_t size) {
-    return number(id, 2).number(size, 2);
-  }
   DatagramWriter& u8(unsigned value) {
     bytes_.push_back(std::byte(value));
     return *this;
@@ -40,13 +36,6 @@ class DatagramWriter {
   DatagramWriter& number(std::uint64_t value, int size) {
     for (int k = 0; k < size; ++k) u8(unsigned(value >> 8 * k & 0xff));
     return *this;
-  }
-  DatagramWriter& big_endian(std::uint32_t value) {
-    for (int shift = 24; shift >= 0; shift -= 8) u8(value >> shift & 0xff);
-    return *this;
-  }
-  DatagramWriter& sequence_number(std::int64_t value) {
-    return number(std::uint64_t(value) >> 32, 4).number(std::uint64_t(value) & 0xffffffff, 4);
   }
   DatagramWriter& prefix(const Prefix& of) {
     bytes_.insert(bytes_.end(), of.begin(), of.end());
@@ -68,6 +57,64 @@ Bytes payload_of(const Submessage& of, std::uint32_t from_writer) {
   if (at.entity() != from_writer || to_payload < 16) return {};
   at.skip(4 + to_payload - at.at());
   return at.ok() ? at.rest() : Bytes{};
+}
+
+/// [byte] where an announcement and its numbers stand in a datagram.
+struct Places {
+  std::size_t begin = 0, end = 0;  // of its submessage
+  std::size_t number = 0;          // of its sequence number
+  std::size_t lease = 0;           // of its lease duration
+  bool number_is_little_endian = true, lease_is_little_endian = true;
+};
+
+// In a list of parameters. @return its value, at least `size` bytes; nothing if there is none
+Bytes parameter_in(Cursor at, std::uint16_t wanted, std::size_t size) {
+  constexpr std::uint16_t kEnd = 1;
+  while (at.ok() && at.left() >= 4) {
+    const std::uint16_t id = at.u16();
+    const Bytes value = at.take(at.u16());
+    if (id == kEnd) return {};
+    if (id == wanted && value.size() >= size) return value;
+  }
+  return {};
+}
+
+Bytes lease_in(Bytes payload) {
+  constexpr std::size_t kBeforeParameters = 4;
+  if (payload.size() < kBeforeParameters) return {};
+  const bool little_endian = (payload[1] & std::byte{1}) != std::byte{0};
+  return parameter_in({payload.subspan(kBeforeParameters), little_endian}, 0x0002, 8);
+}
+
+// Of a DATA: disposed or unregistered.
+bool has_left(const Submessage& of) {
+  if (!of.has(2)) return true;  // a key alone, or nothing
+  if (!of.has(1)) return false;
+  Cursor at = of.cursor();
+  at.skip(2);
+  const std::size_t to_parameters = at.u16();
+  at.skip(to_parameters);
+  const Bytes status = parameter_in({at.rest(), of.has(0)}, 0x0071, 4);
+  return !status.empty() && status[3] != std::byte{0};
+}
+
+// Of the first announcement in a datagram; nothing if there is none.
+std::optional<Places> announced_in(Bytes datagram) {
+  constexpr std::size_t kNumberAt = 12;
+  Cursor at(datagram.subspan(kHeader), false);
+  for (Submessage of; at.left() > 0 && next(at, of);) {
+    const Bytes payload = payload_of(of, kDiscoveryWriter);
+    const Bytes lease = lease_in(payload);
+    if (lease.empty()) continue;
+    const std::size_t body = std::size_t(of.body.data() - datagram.data());
+    return Places{.begin = body - 4,
+                  .end = body + of.body.size(),
+                  .number = body + kNumberAt,
+                  .lease = std::size_t(lease.data() - datagram.data()),
+                  .number_is_little_endian = of.has(0),
+                  .lease_is_little_endian = (payload[1] & std::byte{1}) != std::byte{0}};
+  }
+  return {};
 }
 
 std::optional<HandshakeMessage> read_message(Bytes payload, const Prefix& own) {
@@ -115,18 +162,39 @@ bool is_greeting(Bytes datagram, const Prefix& own) {
          std::ranges::equal(mark.body, std::as_bytes(std::span(kMark)));
 }
 
-std::vector<std::byte> make_farewell(const Prefix& of) {
-  constexpr std::uint16_t kKeyHash = 0x0070, kStatusInfo = 0x0071, kEnd = 1;
-  constexpr std::uint32_t kDisposedAndUnregistered = 3;
-  constexpr std::size_t kFixed = 20, kParameters = 4 + kGuidSize + 8 + 4;
-  DatagramWriter out(of);
-  out.submessage(data, 2, kFixed + kParameters).number(0, 2).number(16, 2);
-  out.big_endian(kDiscoveryReader).big_endian(kDiscoveryWriter);
-  out.sequence_number(kMostSequence - 1);  // later than what that one has said
-  out.parameter(kKeyHash, kGuidSize).prefix(of).big_endian(kParticipantEntity);
-  out.parameter(kStatusInfo, 4).big_endian(kDisposedAndUnregistered);
-  out.parameter(kEnd, 0);
-  return out.take();
+bool is_announcement(Bytes datagram) {
+  return announced_in(datagram).has_value();
+}
+
+bool is_farewell(Bytes datagram) {
+  constexpr std::size_t kWriterAt = 8;
+  Cursor at(datagram.subspan(kHeader), false);
+  for (Submessage of; at.left() > 0 && next(at, of);) {
+    if (of.kind != data) continue;
+    Cursor in = of.cursor();
+    in.skip(kWriterAt);
+    if (in.entity() == kDiscoveryWriter && has_left(of)) return true;
+  }
+  return false;
+}
+
+std::vector<std::byte> make_brief(Bytes announcement) {
+  constexpr std::uint32_t kBrief = 42'949'673;  // 10 ms in units of 2^-32 s
+  const auto places = announced_in(announcement).value();
+  std::vector<std::byte> brief(announcement.begin(), announcement.end());
+  const auto put = [&](std::size_t at, std::uint32_t value, bool little_endian) {
+    for (int k = 0; k < 4; ++k) {
+      brief[at + std::size_t(k)] = std::byte(value >> 8 * (little_endian ? k : 3 - k) & 0xff);
+    }
+  };
+  const auto number = std::uint64_t(kMostSequence - 1);
+  put(places.number, std::uint32_t(number >> 32), places.number_is_little_endian);
+  put(places.number + 4, std::uint32_t(number), places.number_is_little_endian);
+  put(places.lease, 0, places.lease_is_little_endian);
+  put(places.lease + 4, kBrief, places.lease_is_little_endian);
+  brief.erase(brief.begin() + std::ptrdiff_t(places.end), brief.end());
+  brief.erase(brief.begin() + kHeader, brief.begin() + std::ptrdiff_t(places.begin));
+  return brief;
 }
 
 }  // namespace goshawk::runtime::wire

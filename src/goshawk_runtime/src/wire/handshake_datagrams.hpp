@@ -27,7 +27,14 @@ std::vector<std::byte> make_greeting(const SenderTable::Prefix& from,
 /// @return whether a well-formed datagram is a greeting for that participant
 bool is_greeting(Bytes datagram, const SenderTable::Prefix& own);
 
-/// Discovery data that says that a participant has left, as if it came from that one.
-std::vector<std::byte> make_farewell(const SenderTable::Prefix& of);
+/// @return whether a well-formed datagram holds discovery data of a participant that is there
+bool is_announcement(Bytes datagram);
+
+/// @return whether a well-formed datagram says that a participant has left
+bool is_farewell(Bytes datagram);
+
+/// The announcement alone, made later than any that its sender made, and good for 10 ms only.
+/// @pre is_announcement(announcement)
+std::vector<std::byte> make_brief(Bytes announcement);
 
 }  // namespace goshawk::runtime::wire

@@ -37,19 +37,15 @@ void Handshakes::authorized(const Prefix& other) {
   if (found != others_.end()) found->second.is_authorized = true;
 }
 
-void Handshakes::left(const Prefix& other) {
+bool Handshakes::left(const Prefix& other) {
   const std::lock_guard lock(mutex_);
-  others_.erase(other);
+  const auto node = others_.extract(other);
+  return !node.empty() && node.mapped().is_leaving;
 }
 
-bool Handshakes::must_forget(Bytes datagram) {
-  const std::lock_guard lock(mutex_);
-  if (!own_) return false;
-  Prefix sender;
-  std::ranges::copy(datagram.subspan(kHeader - kPrefix, kPrefix), sender.begin());
-  const auto found = others_.find(sender);
-  if (found == others_.end()) return false;
-  Other& other = found->second;
+// Before it is read.
+bool Handshakes::must_forget(Other& other, Bytes datagram) const {
+  if (is_farewell(datagram)) return true;
   if (other.is_authorized && is_greeting(datagram, *own_)) return true;
   const auto message = handshake_message(datagram, *own_);
   if (!message) return false;
@@ -58,6 +54,22 @@ bool Handshakes::must_forget(Bytes datagram) {
   const bool is_other = other.request && *other.request != message->number;
   other.request = message->number;
   return is_other;
+}
+
+Handshakes::Intake Handshakes::take_in(Bytes datagram) {
+  const std::lock_guard lock(mutex_);
+  if (!own_) return {};
+  Prefix sender;
+  std::ranges::copy(datagram.subspan(kHeader - kPrefix, kPrefix), sender.begin());
+  const auto found = others_.find(sender);
+  if (found == others_.end()) return {.passes = !is_farewell(datagram)};
+  Other& other = found->second;
+  if (other.is_leaving) return {.passes = false};
+  if (is_announcement(datagram)) other.announcement.assign(datagram.begin(), datagram.end());
+  if (!must_forget(other, datagram)) return {};
+  other.is_leaving = true;
+  if (other.announcement.empty()) return {.passes = false};  // its lease ends by itself
+  return {.passes = false, .instead = make_brief(other.announcement)};
 }
 
 std::vector<Handshakes::Greeting> Handshakes::greetings(const void* way, std::int64_t now_ns) {

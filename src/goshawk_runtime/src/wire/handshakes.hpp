@@ -22,6 +22,11 @@ namespace goshawk::runtime::wire {
 /// one that has finished a handshake with the greeter forgets the greeter and meets it anew. It
 /// does the same if a second request for a handshake comes that is not the first one sent again.
 ///
+/// Forgetting is left to the thread in which leases end: Fast DDS 2.9.1 waits for ever if a thread
+/// that receives forgets a participant while that thread has anything to do. So farewells never
+/// reach it. The last announcement of who leaves is repeated with a lease of 10 ms instead, and
+/// nothing more of that participant passes until it is forgotten.
+///
 /// With a forged greeting a stranger can delay a handshake, as with forged discovery data, which is
 /// not encrypted either; on loopback the check of senders refuses both. If a network reorders
 /// datagrams, a handshake may be made once more.
@@ -43,11 +48,15 @@ class Handshakes {
   /// Tells what Fast DDS has found out about another participant.
   void discovered(const Prefix& other, const Locators& at);
   void authorized(const Prefix& other);  // the handshake has ended
-  void left(const Prefix& other);
+  /// @return whether it had taken leave, or was to be met anew: it did not just fall silent
+  bool left(const Prefix& other);
 
-  /// Reads a well-formed datagram.
-  /// @return whether Fast DDS must forget its sender before it reads it
-  bool must_forget(Bytes datagram);
+  struct Intake {
+    bool passes = true;
+    std::vector<std::byte> instead{};  // a datagram that Fast DDS must read; empty: none
+  };
+  /// What Fast DDS must read of a well-formed datagram.
+  Intake take_in(Bytes datagram);
 
   /// @param way through which the greetings will be sent: each goes once through each
   /// @param now_ns on a steady clock
@@ -59,11 +68,15 @@ class Handshakes {
   struct Other {
     Locators at{};
     bool is_authorized = false;
-    bool is_heard = false;  // a handshake message has come since it was discovered
+    bool is_heard = false;    // a handshake message has come since it was discovered
+    bool is_leaving = false;  // Fast DDS is about to forget it
+    std::vector<std::byte> announcement{};
     std::optional<std::int64_t> request{};
     std::int64_t greeted_ns = 0;
     std::vector<const void*> ways{};
   };
+
+  bool must_forget(Other& other, Bytes datagram) const;
 
   mutable std::mutex mutex_;
   std::optional<Prefix> own_;

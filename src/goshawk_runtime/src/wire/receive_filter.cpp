@@ -92,10 +92,10 @@ class FilteringTransport : public transport::ChainingTransport {
     std::string_view fault = fault_of(datagram);
     if (fault.empty() && loopback_only_) fault = fault_of_sender(datagram, remote);
     if (!fault.empty()) return options_.refusals->add(fault, rtps::IPLocator::to_string(remote));
-    if (options_.handshakes && options_.handshakes->must_forget(datagram)) {
-      pass_on(*next, make_farewell(sender_of(datagram)), local, remote);
-    }
-    pass_on(*next, datagram, local, remote);
+    if (!options_.handshakes) return pass_on(*next, datagram, local, remote);
+    const auto intake = options_.handshakes->take_in(datagram);
+    if (!intake.instead.empty()) pass_on(*next, intake.instead, local, remote);
+    if (intake.passes) pass_on(*next, datagram, local, remote);
   }
 
  private:

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -25,15 +26,20 @@ class SenderTable {
   /// @return the port that it was heard from, or nothing if it was not heard
   std::optional<std::uint16_t> port_of(const Prefix& participant) const;
 
+  /// @return whether the port that it was heard from was since given to another: of the last 64
+  bool has_ended(const Prefix& participant) const;
+
   std::size_t size() const;  // at most one a port
 
  private:
   mutable std::mutex mutex_;
   std::map<Prefix, std::uint16_t> port_of_;
   std::map<std::uint16_t, Prefix> participant_at_;
+  std::deque<Prefix> ended_;
 };
 
-/// @return whether a socket of any process has this UDP port of 127.0.0.1
+/// @return whether a socket of any process has this UDP port of 127.0.0.1; sockets that share
+///         ports (SO_REUSEADDR) do not count
 bool is_taken(std::uint16_t port);
 
 }  // namespace goshawk::runtime::wire

@@ -3,6 +3,11 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <atomic>
+#include <thread>
+#include <utility>
+#include <vector>
+
 #include "../../src/wire/sender_table.hpp"
 
 namespace goshawk::runtime {
@@ -42,24 +47,54 @@ TEST(SenderTable, KnowsThePortThatAParticipantWasHeardFrom) {
   EXPECT_EQ(table.port_of(named(1)), std::nullopt);
   EXPECT_TRUE(table.admits(named(1), 7));
   EXPECT_EQ(table.port_of(named(1)), 7);
-  // Another one has the port: the first has ended.
-  EXPECT_TRUE(table.admits(named(2), 7));
-  EXPECT_EQ(table.port_of(named(1)), std::nullopt);
 }
 
-TEST(Ports, AreTakenAsLongAsTheirSocketIsOpen) {
+TEST(SenderTable, KnowsThatAParticipantHasEndedWhenAnotherHasItsPort) {
+  wire::SenderTable table;
+  EXPECT_TRUE(table.admits(named(1), 7));
+  EXPECT_FALSE(table.has_ended(named(1)));
+  EXPECT_FALSE(table.has_ended(named(2))) << "was never heard";
+  EXPECT_TRUE(table.admits(named(2), 7));
+  EXPECT_EQ(table.port_of(named(1)), std::nullopt);
+  EXPECT_TRUE(table.has_ended(named(1)));
+  EXPECT_FALSE(table.has_ended(named(2)));
+  EXPECT_TRUE(table.admits(named(1), 8));
+  EXPECT_FALSE(table.has_ended(named(1)));
+}
+
+/// A socket with a port of 127.0.0.1 that the kernel chose.
+std::pair<int, std::uint16_t> open_port() {
   const int socket = ::socket(AF_INET, SOCK_DGRAM, 0);
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  ASSERT_EQ(bind(socket, reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
+  EXPECT_EQ(bind(socket, reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
   socklen_t size = sizeof address;
-  ASSERT_EQ(getsockname(socket, reinterpret_cast<sockaddr*>(&address), &size), 0);
-  const std::uint16_t port = ntohs(address.sin_port);
+  EXPECT_EQ(getsockname(socket, reinterpret_cast<sockaddr*>(&address), &size), 0);
+  return {socket, ntohs(address.sin_port)};
+}
+
+TEST(Ports, AreTakenAsLongAsTheirSocketIsOpen) {
+  const auto [socket, port] = open_port();
   EXPECT_TRUE(wire::is_taken(port));
   EXPECT_TRUE(wire::is_taken(port)) << "looking must not take it";
   close(socket);
   EXPECT_FALSE(wire::is_taken(port));
+}
+
+// All readers of a stage look at its port at the same moment, when its successor first speaks.
+TEST(Ports, AreNotTakenByThoseWhoLook) {
+  const auto [socket, port] = open_port();
+  close(socket);
+  std::atomic<int> taken = 0;
+  std::vector<std::jthread> looking;
+  for (int i = 0; i < 4; ++i) {
+    looking.emplace_back([&taken, port = port] {
+      for (int k = 0; k < 20'000; ++k) taken += wire::is_taken(port);
+    });
+  }
+  looking.clear();
+  EXPECT_EQ(taken, 0);
 }
 
 }  // namespace

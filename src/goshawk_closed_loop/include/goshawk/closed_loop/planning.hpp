@@ -8,6 +8,7 @@
 #include "goshawk/core/plan_request.hpp"
 #include "goshawk/core/stage_role.hpp"
 #include "goshawk/corridor_builder/corridor_builder.hpp"
+#include "goshawk/navigator/answer_check.hpp"
 #include "goshawk/path_search/path_search.hpp"
 #include "goshawk/trajectory_optimizer/trajectory_optimizer.hpp"
 
@@ -36,7 +37,7 @@ class Planning {
   struct Answer {
     Result<Commitment> commitment;
     StageRole last;  // the stage that made it, or failed
-    double goal_moved_m = 0.0;
+    navigator::Shortfall shortfall = {};
     Times times = {};
   };
 
@@ -50,12 +51,14 @@ class Planning {
 
  private:
   Planning(path_search::PathSearch search, corridor_builder::CorridorBuilder builder,
-           trajectory_optimizer::TrajectoryOptimizer optimizer)
-      : search_(std::move(search)),
+           trajectory_optimizer::TrajectoryOptimizer optimizer, double horizon_m)
+      : horizon_m_(horizon_m),
+        search_(std::move(search)),
         builder_(std::move(builder)),
         optimizer_(std::move(optimizer)) {}
 
   std::shared_ptr<const VoxelGrid> map_;
+  double horizon_m_;
   path_search::PathSearch search_;
   corridor_builder::CorridorBuilder builder_;
   trajectory_optimizer::TrajectoryOptimizer optimizer_;

@@ -20,6 +20,7 @@ struct Config {
   double waypoint_clearance_voxels =
       1.0;                   // how far inner waypoints keep from faces, if there is room
   bool drop_covered = true;  // leave polytopes out whose neighbours meet without them
+  double horizon_m = 0.0;    // of the path that a corridor is built for; 0: all of it
 };
 
 template <typename Self, typename Visitor>
@@ -58,6 +59,12 @@ void describe(Self& config, Visitor&& visit) {
   visit("drop_covered", config.drop_covered, "",
         "leave out polytopes whose neighbours share a ball that is as good without them",
         AtRunTime{Anything{}});
+  visit(
+      "horizon_m", config.horizon_m, "m",
+      "a path that is longer than this by a fifth gets a corridor, and so a plan, for its first "
+      "part of this length alone; the navigator plans on before it ends there. For a vehicle that "
+      "plans at the rate of its map; 0: the whole path",
+      AtRunTime{Range{0.0, 1e4}});
 }
 
 }  // namespace goshawk::corridor_builder

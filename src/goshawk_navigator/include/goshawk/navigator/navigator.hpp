@@ -12,6 +12,7 @@
 #include "goshawk/core/plan_request.hpp"
 #include "goshawk/core/stage_role.hpp"
 #include "goshawk/core/vehicle.hpp"
+#include "goshawk/navigator/answer_check.hpp"
 #include "goshawk/navigator/config.hpp"
 #include "goshawk/navigator/remedy.hpp"
 #include "goshawk/navigator/schedule.hpp"
@@ -128,9 +129,8 @@ class Navigator {
   /// An answer to a request that is no certified trajectory: counted. The caller has said so.
   void on_bad_answer(std::uint64_t id, const Error& why);
   /// A stage has answered a request: with ok, or with why not.
-  /// @param goal_moved_m how far the search says that it moved the goal
   void on_report(std::uint64_t id, StageRole stage, const Error& outcome, std::int64_t now_ns,
-                 double goal_moved_m = 0.0);
+                 const Shortfall& shortfall = {});
   /// What the tracker says that it follows or holds the end of; 0: nothing.
   /// @param follows it is on it, as planned
   void on_tracking(std::uint64_t id, bool follows, std::int64_t now_ns);
@@ -149,7 +149,7 @@ class Navigator {
     PlanRequest request;
     std::int64_t asked_ns = 0;
     StageRole last_stage = StageRole::other;  // that answered ok
-    double goal_moved_m = 0.0;
+    Shortfall shortfall = {};
     int refused = 0;  // answers
     std::string why_refused = {};
     std::optional<Failure> failure = {};
@@ -236,7 +236,8 @@ class Navigator {
   void take_answer(Commitment candidate, std::uint64_t number, std::int64_t now_ns);
   void refuse_answer(const Error& why);
   bool wait_for_map(const Commitment& candidate, std::uint64_t number, std::int64_t now_ns);
-  void commit(CommittedTrajectory committed, std::uint64_t number, std::int64_t now_ns);
+  void commit(CommittedTrajectory committed, double beyond_m, std::uint64_t number,
+              std::int64_t now_ns);
   void check_pending(std::int64_t now_ns);
   void on_tracker_report(std::uint64_t id, const Error& outcome, std::int64_t now_ns);
   void check_map_retry(std::int64_t now_ns);
@@ -248,12 +249,16 @@ class Navigator {
   bool approaches() const;
   Status add_stop(Commitment& candidate, bool from_rest) const;
   void move_stop(std::int64_t now_ns);
+  bool stop_sooner(std::int64_t now_ns);
+  void commit_stop(std::optional<StopPart> stop);
   void improve(std::int64_t now_ns);
+  void improve_by_new_map(std::int64_t now_ns);
   double improvement_lead_s() const;
   void take_improvement(Commitment candidate, std::uint64_t number, std::int64_t now_ns);
-  bool is_better(const CommittedTrajectory& other, std::int64_t now_ns) const;
+  bool is_better(const Leg& other, std::int64_t now_ns) const;
   void rest_before_goal(std::int64_t now_ns);
   // navigator.cpp
+  double left_m(const Leg& leg) const;
   void check_arrival(std::int64_t now_ns);
   bool at_rest() const;
   bool has_given_up() const { return state_ == State::failed || state_ == State::held; }
@@ -275,6 +280,7 @@ class Navigator {
   FreeSpace space_;
   std::int64_t brake_again_ns_ = 0;  // of a hold
   std::int64_t improve_ns_ = 0;      // then the next improvement is asked for
+  bool superseded_by_map_ = false;   // the improvement before the one that is open
   double latency_s_ = 0.0;           // from request to answer, of late
   std::optional<std::int64_t> map_changed_ns_;
   std::optional<Tracked> tracked_;

@@ -12,6 +12,7 @@ struct Leg {
   CommittedTrajectory committed;
   bool brakes = false;    // it leads to rest, and to no goal
   bool accepted = false;  // by the tracker
+  double beyond_m = 0.0;  // [m] of the way that its plan leaves from its end to the goal
   /// The leg before it has the same nominal part, and an earlier stop: until the tracker has taken
   /// this one, that one is flown.
   bool continues = false;
@@ -19,7 +20,8 @@ struct Leg {
   std::uint64_t id() const { return committed.id(); }
   std::int64_t start_ns() const { return committed.start_time_ns(); }
   std::int64_t end_ns() const;
-  /// Does it come to rest, on its stop part, farther than so from where its nominal part ends?
+  /// Does it come to rest before the goal: at its horizon, or on its stop part farther than so from
+  /// where its nominal part ends?
   bool stops_early(double tolerance_m) const;
   /// At its end after it, at its start before it. @param time_ns as start_ns()
   FlatState at(std::int64_t time_ns) const;

@@ -9,11 +9,11 @@ namespace goshawk::stage {
 
 /// By how much the wall clock of another host differs from this one's, by the stamps of a message
 /// that it sends regularly. A message arrives after it was sent, so the quickest of the last ones
-/// bounds the difference from one side. Ages that a network explains count as agreement: clocks that
-/// are set by a time server are better than this estimate.
+/// bounds the difference from one side. Ages that a network explains count as agreement: clocks
+/// that are set by a time server are better than this estimate.
 ///
-/// What it finds is late by the quickest message's time on the way; that time stays the same, so all
-/// that the sender dates is late by the same.
+/// What it finds is late by the quickest message's time on the way; that time stays the same, so
+/// all that the sender dates is late by the same.
 class SenderClock {
  public:
   /// A message that is not sent again if it is lost. @param stamp_ns [ns] sender's wall clock
@@ -33,6 +33,8 @@ class SenderClock {
     std::int64_t stamp_ns;
     std::int64_t now_ns;
   };
+  void forget_other_clock();
+
   std::deque<Heard> heard_;  // the newest last
 };
 

@@ -22,6 +22,9 @@ enum class Mode {
 };
 std::string_view to_string(Mode mode);
 
+/// Who flies the vehicle, by its own word.
+enum class Control { goshawk, autopilot, pilot, nobody };  // goshawk: the setpoints are flown
+
 struct TrackingStatus {
   Mode mode = Mode::idle;
   Error fault{ErrorCode::ok, ""};        // ok, or why the trajectory is not followed as planned
@@ -67,7 +70,8 @@ class Tracker {
   /// reference is followed until exactly then; those queued for the same time or later are
   /// replaced. With its start past it is followed at once, from where it should be by now.
   /// A refused trajectory changes nothing. Sentences name the trajectory and the reason.
-  /// @return all of admit(); not_at_start: no odometry yet, or it does not pass the vehicle, nor
+  /// @return all of admit(); tracking_lost: the vehicle says that it does not fly the setpoints;
+  ///         not_at_start: no odometry yet, or it does not pass the vehicle, nor
   ///         the present reference, within the start tolerances; deadline_exceeded: it has ended;
   ///         no_map: there is none, or not yet the version that it names; trajectory_blocked: the
   ///         map has something in its way
@@ -95,8 +99,9 @@ class Tracker {
     return step(state, now_ns, now_ns);
   }
 
-  /// The newest map: what is left of what is flown and of what waits is checked against it. What
-  /// is blocked is braked for (trajectory_blocked): along its path, else on another way that is
+  /// The newest map: what is left of what is flown and of what waits is checked against it. The
+  /// stop part of what is blocked begins sooner, if it has one and a stop fits: then nothing is
+  /// lost. Else it is braked for (trajectory_blocked): along its path, else on another way that is
   /// free, else on the one that stays free for the longest time. A landing whose way down it shows
   /// blocked stops and holds where it is.
   /// @pre grid->check() ok
@@ -115,6 +120,11 @@ class Tracker {
 
   /// The navigator lives. Only one that was heard can be missed; a landing ends when it is back.
   void heard_navigator(std::int64_t now_ns);
+
+  /// What the vehicle says, believed for a second: until it says otherwise its setpoints are flown.
+  /// Nothing is accepted while they are not. One that comes back from where others flew it to is
+  /// stopped where it is: it does not chase the place that it held before.
+  void heard_vehicle(Control control, std::int64_t now_ns);
 
   /// What must be noticed when nothing comes in. Odometry older than its timeout is lost: the
   /// vehicle, which gets no command, brakes by itself, and is stopped from where it is when
@@ -148,6 +158,7 @@ class Tracker {
   double jump_m(const RigidBodyState& state, std::int64_t stamp_ns) const;
   void stop_after_jump(double jump_m, std::int64_t now_ns);
   Status check_agreement(std::int64_t now_ns) const;
+  Status check_control(std::int64_t now_ns) const;
   void find_again(std::int64_t last_stamp_ns, std::int64_t now_ns);
   void forget_errors();
   void watch_error(std::int64_t now_ns);
@@ -164,6 +175,7 @@ class Tracker {
   void check_landing(std::int64_t now_ns);
   void check_flight(std::int64_t now_ns);
   void drop_queued(std::size_t first, const Error& why, std::uint64_t newest);
+  bool stop_sooner(Reference& flown, std::int64_t from_ns);
   void stop_before(const Obstruction& found, std::uint64_t newest, std::int64_t now_ns);
   bool stop_on_free_way(std::int64_t now_ns);
   std::uint64_t followed_id() const;
@@ -196,6 +208,8 @@ class Tracker {
   Error refused_{ErrorCode::ok, ""};      // the newest odometry, or too far from where it holds
   Error deserted_{ErrorCode::ok, ""};     // by the navigator, until it is heard again
   std::optional<std::int64_t> heard_ns_;  // the navigator's last sign of life
+  Control control_ = Control::goshawk;
+  std::int64_t control_ns_ = 0;                // when the vehicle said so
   std::optional<std::int64_t> rest_since_ns_;  // the reference's, for good
   LandingGuard guard_;
   MapGuard map_;
