@@ -46,16 +46,17 @@ void measure_sampling(Report& report, Case c);
 /// and the memory that planner and query took.
 void measure_setup(Report& report, Case c);
 
-/// Rows for the first query of a planner on its first map, of a new size beside the same query
-/// again, over all queries of the worlds.
+/// Rows for the first map of a planner, of a new size, for the first query on it, and for the same
+/// query again, over all queries of the worlds.
 void measure_first(Report& report, const Case& c);
 
 /// Rows for a goal that cannot be reached: on a new map, again on the same map, and after 1,000
 /// voxels changed; and a flood from the start for comparison.
 void measure_no_way(Report& report, const Case& c);
 
-/// Rows for the same goal after the map changed a little and the start moved along the path: searched
-/// again, and with reuse_path. @param boxes a box appears, else 1,000 voxels change anywhere
+/// Rows for the same goal after the map changed a little and the start moved along the path:
+/// searched again, and with reuse_path. @param boxes a box appears, else 1,000 voxels change
+/// anywhere
 void measure_replanning(Report& report, Case c, bool boxes);
 
 /// One row a kind of pruning: waypoints and length before and after.

@@ -179,6 +179,23 @@ void big(Report& report, bool quick) {
   }
 }
 
+void first_queries(Report& report, const std::string& rule, bool quick) {
+  const int maps = quick ? 3 : 12;
+  Case first{.table = "first query", .rule = rule};
+  first.map = "noise 10x10x5 m";
+  first.ratio = 0.1;
+  first.worlds = seeds(maps, worlds::noise, {50, 50, 25}, 0.1);
+  measure_first(report, first);
+  first.map = "boxes 20x20x5 m";
+  first.ratio = 0.2;
+  first.worlds = seeds(maps, worlds::boxes, {100, 100, 25}, 0.2);
+  measure_first(report, first);
+  first.map = "warframe Complex, longest detours";
+  first.ratio = {};
+  first.worlds = {worlds::warframe_hard("Complex", std::size_t(maps))};
+  if (!first.worlds.front().queries.empty()) measure_first(report, first);
+}
+
 // Where a search has most to do, or least to go by.
 void hard(Report& report, bool quick) {
   const Index3 size{500, 500, 50};
@@ -196,6 +213,9 @@ void hard(Report& report, bool quick) {
                 .rule = rule,
                 .worlds = {worlds::walled(worlds::boxes(size, 0.2, 1))}};
     measure_no_way(report, no_way);
+    no_way.map = "boxes 100x100x10 m, a closed room";
+    no_way.worlds = {worlds::with_closed_room(worlds::boxes(size, 0.2, 1))};
+    measure_no_way(report, no_way);
     if (!quick) {
       no_way.map = "boxes 200x200x20 m, a wall";
       no_way.worlds = {worlds::walled(worlds::boxes({1000, 1000, 100}, 0.2, 1))};
@@ -212,6 +232,7 @@ void hard(Report& report, bool quick) {
     any.table = "first query";
     any.worlds.front().queries.resize(quick ? 3 : 10);
     measure_first(report, any);
+    first_queries(report, rule, quick);
     any.table = "replanning";
     any.worlds = seeds(quick ? 1 : 3, worlds::boxes, size, 0.2);
     for (const bool boxes : {true, false}) measure_replanning(report, any, boxes);

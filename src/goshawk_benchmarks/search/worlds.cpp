@@ -189,8 +189,28 @@ World warframe_hard(const std::string& name, std::size_t problems) {
 }
 
 World walled(World world) {
+  world.cut_off = [](BitGrid& map) {
+    const Index3 size = map.size();
+    fill(map, {size.x / 2, 0, 0}, {size.x / 2 + 2, size.y, size.z}, true);
+  };
+  world.cut_off(world.blocked);
+  return world;
+}
+
+World with_closed_room(World world) {
+  world.cut_off = [](BitGrid& map) {
+    const Index3 size = map.size();
+    const Index3 lo{size.x / 2 - 50, size.y / 2 - 30, size.z / 2 - 15};
+    const Index3 hi{lo.x + 100, lo.y + 60, lo.z + 30};
+    for (const int x : {lo.x, hi.x - 1}) fill(map, {x, lo.y, lo.z}, {x + 1, hi.y, hi.z}, true);
+    for (const int y : {lo.y, hi.y - 1}) fill(map, {lo.x, y, lo.z}, {hi.x, y + 1, hi.z}, true);
+    for (const int z : {lo.z, hi.z - 1}) fill(map, {lo.x, lo.y, z}, {hi.x, hi.y, z + 1}, true);
+  };
+  world.cut_off(world.blocked);
   const Index3 size = world.blocked.size();
-  fill(world.blocked, {size.x / 2, 0, 0}, {size.x / 2 + 2, size.y, size.z}, true);
+  Index3 goal{size.x / 2, size.y / 2, size.z / 2};
+  while (world.blocked.get(goal)) ++goal.x;
+  world.queries.front().goal = goal;
   return world;
 }
 

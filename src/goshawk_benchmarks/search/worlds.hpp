@@ -20,6 +20,8 @@ struct World {
     Index3 goal;
   };
   std::vector<Query> queries;
+  /// Draws what cuts the goal off, if anything does.
+  void (*cut_off)(BitGrid& map) = nullptr;
 };
 
 /// Voxels drawn independently; from one corner to the opposite one, both kept free.
@@ -44,6 +46,10 @@ World warframe_hard(const std::string& name, std::size_t problems);
 
 /// The same map with a wall of two voxels across the middle of x, from end to end.
 World walled(World world);
+
+/// The same map with a closed room of 100 x 60 x 30 voxels in its middle, and the goal in it.
+/// @pre the map is larger than the room
+World with_closed_room(World world);
 
 /// An OctoMap file of the data folder, unknown space blocked, grown by 0.2 m, with random pairs of
 /// voxels that are joined. @return a world without queries if the file is missing

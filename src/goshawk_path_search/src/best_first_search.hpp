@@ -16,6 +16,7 @@
 #include "goshawk/path_search/planner.hpp"
 #include "goshawk/path_search/successor_order.hpp"
 #include "goshawk/path_search/tiled_labels.hpp"
+#include "goshawk/path_search/word_flood.hpp"
 #include "move_sets.hpp"
 
 /// The best-first search behind make_grid_search(), which alone includes this, together with
@@ -26,10 +27,16 @@ using Node = ObstacleBits::Node;
 
 inline constexpr int kExpansionsBetweenLooks = 1024;  // at the clock and the stop token
 
-// The components of a new map are found beside the search: so many bricks at the first look, twice
-// as many at the second, three times at the third. That costs a short search little, and a
-// hopeless one ends soon in a map of any size.
+// Whether there is a way at all is found out beside the search. First a flood from the goals, so
+// many words of it at each look: it seldom needs more than a thousand in all.
+inline constexpr int kWordsALook = 512;
+inline constexpr int kWordsOfFlood = 8192;
+
+// After it the components of the map: so many bricks for each look so far. That costs a short
+// search little, and a hopeless one ends soon in a map of any size.
 inline constexpr int kBricksAtFirstLook = 32;
+
+inline constexpr std::size_t kEntriesAtFirst = 4096;  // in the queue
 
 // Where paths are longer than the empty grid's by this much, most canonical moves that are put off
 // are made in the end.
@@ -41,7 +48,7 @@ template <typename Heuristic, bool kJumps, typename Labels>
 class GridSearch final : public GridPlanner {
  public:
   GridSearch(std::string_view name, CornerRule rule)
-      : name_(name), rule_(rule), rules_(move_rules(rule)), components_(rule) {}
+      : name_(name), rule_(rule), rules_(move_rules(rule)), components_(rule), flood_(rule) {}
 
   using GridPlanner::search;
   std::string_view name() const override { return name_; }
@@ -54,11 +61,15 @@ class GridSearch final : public GridPlanner {
   // To look at the labels of all neighbours at once takes a plain table.
   static constexpr bool kFilters = std::is_same_v<Labels, LabelTable>;
 
+  void populate();
   Status check(const GridQuery& query) const;
   void prepare(const GridQuery& query);
   Status run(const StopSignal& stop);
   bool any_goal_is_joined() const;
+  bool is_known_joined() const;
+  bool is_known_hopeless() const;
   bool look_for_a_way();
+  bool begin_flood();
   void expand(Node node, Index3 at, Label& label, Cost key);
   [[gnu::noinline]] void expand_rest(Node node, Index3 at, Label label, BlockMask moves);
   [[gnu::always_inline]] void make_moves(Node node, Index3 at, Label label, Cost key,
@@ -80,9 +91,10 @@ class GridSearch final : public GridPlanner {
   bool has_map_ = false;
   ObstacleBits bits_;
   Components components_;
+  WordFlood flood_;
   Labels labels_;
   BucketQueue queue_;
-  SuccessorOrder order_;
+  const SuccessorOrder& order_ = successor_order();
 
   // Of the query at work.
   struct Goal {
@@ -96,7 +108,8 @@ class GridSearch final : public GridPlanner {
   Cost put_off_until_ = 0;   // from this key on, a node makes all moves at once
   Cost bound_ = 0;           // only paths below it are of interest: the best so far
   bool reached_ = false;
-  bool joined_ = false;  // start and goal, by components_
+  bool joined_ = false;    // start and goal, by flood_ or components_
+  bool flooding_ = false;  // from the goals, on behalf of this query
   int looks_ = 0;
   bool too_long_ = false;  // something was left out because its cost does not fit a label
   Counters counters_;
@@ -124,8 +137,19 @@ void GridSearch<Heuristic, kJumps, Labels>::set_map(const BitGrid& blocked, cons
       return;
     }
   }
-  if (bits_.assign(blocked)) components_.forget();
+  if (bits_.assign(blocked)) {
+    components_.forget();
+    flood_.forget();
+  }
+  if (!same_size) populate();
   has_map_ = true;
+}
+
+template <typename Heuristic, bool kJumps, typename Labels>
+void GridSearch<Heuristic, kJumps, Labels>::populate() {
+  labels_.populate();
+  if constexpr (kJumps) bits_.populate_jumps();
+  queue_.reserve(kEntriesAtFirst);
 }
 
 template <typename Heuristic, bool kJumps, typename Labels>
@@ -140,7 +164,7 @@ Status GridSearch<Heuristic, kJumps, Labels>::search(const GridQuery& query, Vox
   if (auto status = check(query); !status) return status;
   if (!labels_.start_query()) return too_large(bits_.size());
   prepare(query);
-  if (components_.ready() && !any_goal_is_joined()) return no_way(query);
+  if (is_known_hopeless()) return no_way(query);
   Status ended = run(query.stop);
   path.counters = counters_;
   if (!ended) return ended;
@@ -172,8 +196,9 @@ void GridSearch<Heuristic, kJumps, Labels>::prepare(const GridQuery& query) {
   put_off_until_ = estimate(start_) + kPutOffDetour;
   counters_ = {};
   reached_ = too_long_ = false;
-  joined_ = components_.ready();
+  joined_ = is_known_joined();
   looks_ = 0;
+  flooding_ = false;
   bound_ = kMaxCost - kMoveCost[3] * (ObstacleBits::kLongestJump + 1);
 }
 
@@ -214,10 +239,43 @@ bool GridSearch<Heuristic, kJumps, Labels>::any_goal_is_joined() const {
                      [this](const Goal& goal) { return components_.joined(start_, goal.cell); });
 }
 
-// A share of the work on the components. @return false once they say that there is no way
+// By what earlier queries of this map found out.
+template <typename Heuristic, bool kJumps, typename Labels>
+bool GridSearch<Heuristic, kJumps, Labels>::is_known_joined() const {
+  if (components_.ready()) return any_goal_is_joined();
+  return std::any_of(goals_.begin(), goals_.end(),
+                     [this](const Goal& goal) { return flood_.joins(start_, goal.cell); });
+}
+
+template <typename Heuristic, bool kJumps, typename Labels>
+bool GridSearch<Heuristic, kJumps, Labels>::is_known_hopeless() const {
+  if (components_.ready()) return !any_goal_is_joined();
+  if (flood_.state() != WordFlood::State::closed || flood_.contains(start_)) return false;
+  return std::all_of(goals_.begin(), goals_.end(),
+                     [this](const Goal& goal) { return flood_.contains(goal.cell); });
+}
+
+template <typename Heuristic, bool kJumps, typename Labels>
+bool GridSearch<Heuristic, kJumps, Labels>::begin_flood() {
+  if (!flood_.start(bits_.map(), start_)) return false;
+  for (const Goal& goal : goals_) flood_.add_source(bits_.map(), goal.cell);
+  return true;
+}
+
+// A share of the work on the question whether there is a way at all: first a flood from the goals,
+// which mostly meets the start soon or fills a small closed space; after kWordsOfFlood the
+// components of the whole map. @return false once there is none
 template <typename Heuristic, bool kJumps, typename Labels>
 bool GridSearch<Heuristic, kJumps, Labels>::look_for_a_way() {
-  if (!components_.advance(bits_.map(), kBricksAtFirstLook * ++looks_)) return true;
+  if (looks_++ == 0) flooding_ = begin_flood();
+  if (flooding_) {
+    const WordFlood::State state = flood_.advance(bits_.map(), kWordsALook);
+    joined_ = state == WordFlood::State::met;
+    if (state != WordFlood::State::open) return joined_;
+    flooding_ = flood_.words_done() < kWordsOfFlood;
+    return true;
+  }
+  if (!components_.advance(bits_.map(), kBricksAtFirstLook * looks_)) return true;
   joined_ = any_goal_is_joined();
   return joined_;
 }

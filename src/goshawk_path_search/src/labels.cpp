@@ -2,8 +2,10 @@
 
 #include <sys/mman.h>
 
+#include <algorithm>
 #include <cstdlib>
 
+#include "goshawk/path_search/populate.hpp"
 #include "goshawk/path_search/tiled_labels.hpp"
 
 namespace goshawk::path_search {
@@ -28,6 +30,11 @@ bool LabelMemory::resize(std::size_t labels) {
   return true;
 }
 
+void LabelMemory::populate(std::size_t labels) {
+  path_search::populate(labels_.get(),
+                        std::min(labels * sizeof(Label), labels_.get_deleter().bytes));
+}
+
 bool LabelTable::resize(Index3, std::int64_t nodes) {
   nodes_ = nodes;
   query_ = 0;
@@ -46,9 +53,14 @@ bool TiledLabels::resize(Index3 size, std::int64_t) {
   tiles_x_ = tiles(size.x);
   tiles_y_ = tiles(size.y);
   query_ = 0;
-  const std::size_t count = tiles_x_ * tiles_y_ * tiles(size.z);
-  directory_.reset(static_cast<std::uint64_t*>(std::calloc(count, sizeof(std::uint64_t))));
-  return directory_ != nullptr && memory_.resize(count * 64);
+  tiles_ = tiles_x_ * tiles_y_ * tiles(size.z);
+  directory_.reset(static_cast<std::uint64_t*>(std::calloc(tiles_, sizeof(std::uint64_t))));
+  return directory_ != nullptr && memory_.resize(tiles_ * 64);
+}
+
+void TiledLabels::populate() {
+  path_search::populate(directory_.get(), tiles_ * sizeof(std::uint64_t));
+  memory_.populate(kPopulated);
 }
 
 bool TiledLabels::start_query() {

@@ -162,6 +162,13 @@ void ObstacleBits::forget_derived() {
   }
 }
 
+void ObstacleBits::populate_jumps() {
+  for (Copy& copy : axes_) {
+    copy.ahead.populate();
+    copy.behind.populate();
+  }
+}
+
 void ObstacleBits::find_stops(Copy& copy, std::size_t word) {
   const std::int64_t p = (std::int64_t(word) - 1) * 64;
   const Rows before = rows_at(copy, p - 1), here = rows_at(copy, p), after = rows_at(copy, p + 1);

@@ -19,6 +19,25 @@ int level_of(std::uint32_t rise) {
 
 }  // namespace
 
+// Differences of up to 5 are enough for every case: each axis by two more than the next, the least
+// of them zero or not.
+SuccessorOrder::SuccessorOrder() : cases_(kCases) {
+  constexpr int kMost = 5;
+  for (int z = -kMost; z <= kMost; ++z) {
+    for (int y = -kMost; y <= kMost; ++y) {
+      for (int x = -kMost; x <= kMost; ++x) {
+        Case& c = cases_[index({x, y, z})];
+        if (!c.filled) fill(c, {x, y, z});
+      }
+    }
+  }
+}
+
+const SuccessorOrder& successor_order() {
+  static const SuccessorOrder order;
+  return order;
+}
+
 void SuccessorOrder::fill(Case& c, Index3 left) {
   c.least.fill(std::numeric_limits<std::uint32_t>::max());
   const Cost estimate = OctileHeuristic{}({}, left);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "goshawk/path_search/move_cost.hpp"
+#include "goshawk/path_search/populate.hpp"
 
 namespace goshawk::path_search {
 
@@ -24,6 +25,13 @@ class BucketQueue {
   };
   static constexpr int kShift = 17;
   static constexpr std::uint32_t kNone = 0xFFFFFFFF;
+
+  /// Memory for so many entries, now.
+  void reserve(std::size_t entries) {
+    entries_.reserve(entries);
+    populate(entries_.data(), entries * sizeof(Entry));
+    if (heads_.empty()) grow(0);
+  }
 
   /// Empties the queue. @param base a lower bound on the keys that come; smaller ones count as it
   void clear(Cost base) {

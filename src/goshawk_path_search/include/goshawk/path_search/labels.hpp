@@ -27,6 +27,8 @@ class LabelMemory {
  public:
   /// All labels empty. @return false if there is no memory for so many
   bool resize(std::size_t labels);
+  /// Makes the pages of the first labels, at most so many, now. @pre resize() was true
+  void populate(std::size_t labels);
   Label* data() const { return labels_.get(); }
 
  private:
@@ -73,6 +75,9 @@ class LabelTable : public QueryLabels {
   /// All labels empty. @return false if there is no memory for so many
   bool resize(Index3 size, std::int64_t nodes);
 
+  /// Asks now for the memory of as many labels as a search of some length needs.
+  void populate() { memory_.populate(kPopulated); }
+
   /// Forgets all labels. Once in 32767 queries the table is renewed, at the price of resize().
   /// @return false if that found no memory
   bool start_query();
@@ -82,6 +87,8 @@ class LabelTable : public QueryLabels {
   const Label* around(std::uint32_t node) const { return memory_.data() + node; }
 
  private:
+  static constexpr std::size_t kPopulated = std::size_t{1} << 20;
+
   LabelMemory memory_;
   std::int64_t nodes_ = 0;
 };

@@ -14,7 +14,7 @@ namespace goshawk::path_search {
 /// The obstacles as the search reads them: one bit a voxel in three copies, one with each axis as
 /// the fastest, so that a scan along any axis looks at a word at a time. A blocked layer
 /// surrounds the map, so that no index needs a bounds test; neighbouring rows share it.
-/// Memory: 3 bits a voxel and the layer, and 6 more for the part of the map that jumps look at.
+/// Memory: 3 bits a voxel and the layer, and 6 more for jumps.
 ///
 /// The position of a voxel in the copy with x fastest is also its node number.
 class ObstacleBits {
@@ -31,6 +31,9 @@ class ObstacleBits {
   /// @pre nodes_for(blocked.size()) > 0
   /// @return did any voxel change, or the size?
   bool assign(const BitGrid& blocked);
+
+  /// For those who will jump: asks for the memory of straight_jump() now.
+  void populate_jumps();
 
   /// The map as it was assigned.
   const BitGrid& map() const { return held_; }

@@ -17,7 +17,7 @@ namespace goshawk::path_search {
 /// Most of them are never made.
 ///
 /// The rise depends on the signs of the differences to the goal, on which differ by less than two,
-/// and on which are zero: 2,000 cases, filled in when they first occur.
+/// and on which are zero: 2,000 cases, of which about 500 can occur.
 class SuccessorOrder {
  public:
   static constexpr int kLevels = 3;
@@ -29,14 +29,10 @@ class SuccessorOrder {
     bool filled = false;
   };
 
-  SuccessorOrder() : cases_(kCases) {}
+  SuccessorOrder();
 
   /// @param left goal - voxel
-  const Case& of(Index3 left) {
-    Case& c = cases_[index(left)];
-    if (!c.filled) fill(c, left);
-    return c;
-  }
+  const Case& of(Index3 left) const { return cases_[index(left)]; }
 
  private:
   static constexpr std::size_t kCases = 125 * 2 * 8;
@@ -54,5 +50,8 @@ class SuccessorOrder {
 
   std::vector<Case> cases_;
 };
+
+/// Made once, at first use.
+const SuccessorOrder& successor_order();
 
 }  // namespace goshawk::path_search

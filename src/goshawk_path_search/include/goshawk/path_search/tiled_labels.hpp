@@ -18,6 +18,10 @@ class TiledLabels : public QueryLabels {
   /// All labels empty. @return false if there is no memory for so many
   bool resize(Index3 size, std::int64_t nodes);
 
+  /// Asks now for the memory of the directory, and of as many labels as a search of some length
+  /// needs.
+  void populate();
+
   /// Forgets all labels. Once in 32767 queries they are renewed, at the price of resize().
   /// @return false if that found no memory
   bool start_query();
@@ -44,9 +48,12 @@ class TiledLabels : public QueryLabels {
            std::size_t((v.z & 3) << 4 | (v.y & 3) << 2 | (v.x & 3));
   }
 
+  static constexpr std::size_t kPopulated = std::size_t{1} << 18;  // labels
+
   Index3 size_;
   std::size_t tiles_x_ = 0;
   std::size_t tiles_y_ = 0;
+  std::size_t tiles_ = 0;
   struct Free {
     void operator()(std::uint64_t* tiles) const { std::free(tiles); }
   };
