@@ -24,7 +24,7 @@ def rows(text):
 
 def known_names():
     """Suite.Test of every GoogleTest, Class and Class.test_method of every Python test, names of
-    CTest, and `campaign --faults KIND`."""
+    CTest, and `campaign --faults KIND`, with `--launch live` as well."""
     names = set()
     for path in ROOT.glob("src/*/**/*_test.cpp"):
         for suite, test in re.findall(r"\bTEST(?:_[FP])?\(\s*(\w+),\s*(\w+)\)", path.read_text()):
@@ -37,7 +37,8 @@ def known_names():
         names |= set(re.findall(r"goshawk_(?:test|fuzz)\(NAME (\w+)", path.read_text()))
     kinds = re.search(r"KINDS = \[(.*?)\]",
                       (ROOT / "src/goshawk_bringup/scripts/faults.py").read_text()).group(1)
-    return names | {f"campaign --faults {kind}" for kind in re.findall(r'"(\w+)"', kinds)}
+    return names | {f"campaign {where}--faults {kind}" for kind in re.findall(r'"(\w+)"', kinds)
+                    for where in ("", "--launch live ")}
 
 
 class SafetyPage(unittest.TestCase):

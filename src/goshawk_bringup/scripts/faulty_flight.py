@@ -65,7 +65,7 @@ class FaultyFlight:
         switches = self.folder / "faults"
         switches.mkdir(exist_ok=True)
         self.controls = {s: fault_control.FaultControl(switches, s, seed)
-                         for s in [*faults.STAGES, faults.PLANT]}
+                         for s in [*faults.STAGES, faults.LIDAR, faults.PLANT]}
         self.flight_env = {**env, **fault_control.environment(
             fault_control.shim_of(prefix), switches, env)}
 

@@ -133,6 +133,8 @@ class Flyer:
                  "--no-record", *mission.simulator_parameters(),
                  "--timeout", self.options.timeout_s,
                  *(word for p in self.options.parameters for word in ("-p", p))]
+        if self.options.launch.startswith("live"):
+            words.append("--live")
         if self.options.faults:
             return FaultyMission(self, mission, folder, world).fly(words)
         return {**mission.conditions(), **outcome(*self.call(*words), folder)}
@@ -151,7 +153,8 @@ class FaultyMission:
             options.prefix, self.folder, self.world, [float(x) for x in options.size.split(",")],
             self.flyer.env, self.mission.fault_seed)
         injector = faulty_flight.Injector(
-            flight, faults.drawn(options.faults, self.mission.fault_seed))
+            flight, faults.drawn(options.faults, self.mission.fault_seed,
+                                 options.launch.startswith("live")))
 
         def beside(process):
             try:
@@ -160,9 +163,10 @@ class FaultyMission:
                 self.fault = error
                 self.flyer.interrupt(process)
 
-        status, result = self.flyer.call(
-            *words, *self.truth(), "--keep-going", "-p", f"map_server:map_file:={flight.world}",
-            env=flight.flight_env, beside=beside)
+        loads = ([] if options.launch.startswith("live") else
+                 ["-p", f"map_server:map_file:={flight.world}"])
+        status, result = self.flyer.call(*words, *self.truth(), "--keep-going", *loads,
+                                         env=flight.flight_env, beside=beside)
         if self.fault:
             raise self.fault
         fault_report.assess(injector.events.read(), self.rows)

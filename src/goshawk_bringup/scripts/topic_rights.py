@@ -40,12 +40,16 @@ STAGES = {
                                "vehicle_status"], "writes": []},
     "sensors": {"reads": ["odom", "odom_true"],
                 "writes": ["points", "depth/image_rect_raw", "depth/camera_info", "/tf_static"]},
+    "movers": {"reads": [], "writes": ["movers"]},
+    # cloud_in is remapped as map_server's.
+    "obstacle_tracker": {"reads": ["cloud_in", "points", "odom", "/tf", "/tf_static", "movers"],
+                         "writes": ["obstacles", "tracks"]},
     "visualizer": {"reads": ["octomap_binary", "path", "committed_trajectory", "odom"],
                    "writes": ["view/obstacles", "view/plan", "view/flown", "path_line", "markers"]},
 }
 # They are no stages: they report nothing.
 PEOPLE = {
-    "viewer": {"reads": ALL, "writes": ["goal_pose", "operator_command"]},
+    "viewer": {"reads": ALL, "writes": ["goal_pose", "operator_command", "why"]},
     "recorder": {"reads": ALL, "writes": []},
     "benchmark": {"reads": ["trajectory", "stage_report"], "writes": ["plan_request"]},
     "operator": {"reads": ALL, "writes": ["goal_pose", "goal", "mission", "operator_command",

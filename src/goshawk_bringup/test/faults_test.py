@@ -34,9 +34,9 @@ class Folder(unittest.TestCase):
 
 
 class Draws(unittest.TestCase):
-    def take(self, kinds, seed, count=400):
+    def take(self, kinds, seed, count=400, live=False):
         return [f.row() | {"after_s": f.after_s}
-                for f in itertools.islice(faults.drawn(kinds, seed), count)]
+                for f in itertools.islice(faults.drawn(kinds, seed, live), count)]
 
     def test_a_seed_gives_the_same_faults_each_time_and_another_seed_others(self):
         self.assertEqual(self.take(faults.KINDS, 5), self.take(faults.KINDS, 5))
@@ -56,6 +56,17 @@ class Draws(unittest.TestCase):
             self.assertTrue(0.05 <= f["duration_s"] <= 10.0)
             if faults.PLANT in f["targets"]:
                 self.assertEqual(f["targets"], [*faults.STAGES, faults.PLANT])
+
+    def test_faults_of_the_lidar_come_in_live_flights_alone(self):
+        live = self.take(faults.KINDS, 4, 1000, live=True)
+        for kind in ("kill", "stall", "clock", "loss", "blind"):
+            self.assertIn([faults.LIDAR], [f["targets"] for f in live if f["kind"] == kind], kind)
+        text = " ".join(f["what"] for f in live)
+        for words in ("lidar is silent", "lidar is covered", *faults.CLOUD_LIES.values()):
+            self.assertIn(words, text)
+        self.assertNotIn("empty map", text)
+        known = self.take(faults.KINDS, 4, 1000)
+        self.assertFalse([f for f in known if faults.LIDAR in f["targets"] or "cloud" in f["what"]])
 
 
 # Says its wall clock, and how long it waits for a deadline 0.5 s ahead on it.

@@ -34,6 +34,19 @@ TEST(TrackTimes, GoOnEvenlyWhenTheClockIsSet) {
   }
 }
 
+TEST(TrackTimes, NeverGoBackHoweverLittleTheClockIsSetBack) {
+  for (const std::int64_t back_ns : {1 * kMs, 5 * kMs, 50 * kMs, 99 * kMs, 2'000 * kMs}) {
+    TrackTimes times;
+    std::int64_t last_ns = 0;
+    for (int k = 0; k < 100; ++k) {
+      const std::int64_t at_ns = 10'000 * kMs + k * 4 * kMs;
+      const std::int64_t time_ns = times.time_ns(k < 50 ? at_ns : at_ns - back_ns, at_ns);
+      EXPECT_GE(time_ns, last_ns) << k;
+      last_ns = time_ns;
+    }
+  }
+}
+
 TEST(TrackTimes, StampsThatAreHeardLateOrMuchFasterThanTheyPassAreRight) {
   TrackTimes times;
   for (int k = 0; k < 1000; ++k) {

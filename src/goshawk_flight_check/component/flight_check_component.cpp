@@ -12,6 +12,7 @@
 #include "goshawk/flight_check/config.hpp"
 #include "goshawk/flight_check/planned_track.hpp"
 #include "goshawk/flight_check/watch.hpp"
+#include "goshawk/movers/movers_file.hpp"
 #include "goshawk/runtime/component.hpp"
 #include "goshawk/stage/intake.hpp"
 #include "octomap_msgs.h"
@@ -68,6 +69,7 @@ class FlightCheckComponent : public Component {
         config_(node.parameters<Config>()),
         reporter_(node, StageRole::flight_check, "fcl") {
     if (auto status = config_.body.check(); !status) throw StartupFault(status.error());
+    if (!config_.movers_file.empty()) watch_.set_movers(read_movers());
     node.subscribe<Octomap>(
         "octomap_binary", Qos::latched(),
         [this](const Octomap& m, const MessageInfo&) { new_map_ = m; },
@@ -102,6 +104,15 @@ class FlightCheckComponent : public Component {
   }
 
  private:
+  MoverCheck read_movers() const {
+    auto movers = movers::read_movers(config_.movers_file);
+    if (!movers) throw StartupFault(movers.error());
+    auto check = MoverCheck::create(*std::move(movers), config_.movers_start_s, config_.body,
+                                    config_.options);
+    if (!check) throw StartupFault(check.error());
+    return *std::move(check);
+  }
+
   /// The newest map is read when it is needed: others may have come before it.
   void read_map() {
     if (!new_map_) return;
@@ -156,6 +167,9 @@ class FlightCheckComponent : public Component {
           reporter_.failed(finding.request_id,
                            fail(ErrorCode::collision, finding.outcome->sentence));
           break;
+        case Finding::Kind::mover:
+          reporter_.failed(finding.request_id, finding.outcome.error());
+          break;
         case Finding::Kind::event:
           reporter_.fault(finding.outcome.error());
           break;
@@ -167,8 +181,10 @@ class FlightCheckComponent : public Component {
     const std::uint64_t id = finding.request_id;
     if (!finding.outcome) return reporter_.failed(id, finding.outcome.error(), timing);
     const Verdict& v = *finding.outcome;
-    if (v.touched) {
-      return reporter_.failed(id, fail(ErrorCode::collision, what + ": " + v.sentence), timing);
+    const std::string movers = finding.movers ? "; " + finding.movers->sentence() : "";
+    if (v.touched || (finding.movers && !finding.movers->touched.empty())) {
+      return reporter_.failed(id, fail(ErrorCode::collision, what + ": " + v.sentence + movers),
+                              timing);
     }
     const Vec3& p = v.clearance_place_map;
     // A map without obstacles has no clearance that a number could tell.
@@ -180,7 +196,8 @@ class FlightCheckComponent : public Component {
                         {"x_m", p.x()},
                         {"y_m", p.y()},
                         {"z_m", p.z()},
-                        {"poses", double(v.queries)}});
+                        {"poses", double(v.queries)}},
+                       finding.movers ? finding.movers->sentence() : "");
   }
 
   Node& node_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace goshawk::flight_check {
 
@@ -13,14 +14,15 @@ Eigen::Quaterniond unit(const Quaternion& q) {
 
 }  // namespace
 
-Motion::Motion(std::span<const Sample> track, double reach_m) : track_(track) {
+Motion::Motion(std::span<const Sample> track, double reach_m, double drift_m_s) : track_(track) {
   moved_m_.reserve(track.size());
   moved_m_.push_back(0.0);
   for (std::size_t i = 1; i < track.size(); ++i) {
     const double angle_rad =
         unit(track[i - 1].q_map_base).angularDistance(unit(track[i].q_map_base));
     const double straight_m = (track[i].position_map - track[i - 1].position_map).norm();
-    moved_m_.push_back(moved_m_.back() + straight_m + angle_rad * reach_m);
+    const double drift_m = drift_m_s * (track[i].t_s - track[i - 1].t_s);
+    moved_m_.push_back(moved_m_.back() + straight_m + angle_rad * reach_m + drift_m);
   }
 }
 
@@ -58,8 +60,8 @@ double Motion::between(double from, double to) const {
   return double(found - moved_m_.begin());
 }
 
-Judge::Judge(const ClearanceMeter& meter, const Motion& motion, double tolerance_m, double below_m)
-    : meter_(meter), motion_(motion), tolerance_m_(tolerance_m), below_m_(below_m) {
+Judge::Judge(Measure measure, const Motion& motion, double tolerance_m, double below_m)
+    : measure_(std::move(measure)), motion_(motion), tolerance_m_(tolerance_m), below_m_(below_m) {
   verdict_.clearance_m = kInfinity;
   verdict_.clearance_t_s = motion.t_s(0.0);
   verdict_.clearance_place_map = motion.pose(0.0).position_map;
@@ -102,7 +104,7 @@ double Judge::smallest_that_matters_m() const {
 }
 
 Judge::Measured Judge::measure(double place, double at_most_m) {
-  const Clearance found = meter_.measure(motion_.pose(place), at_most_m);
+  const Clearance found = measure_(motion_.pose(place), motion_.t_s(place), at_most_m);
   ++verdict_.queries;
   if (found.distance_m > 0.0 && found.distance_m < verdict_.clearance_m) {
     verdict_.clearance_m = found.distance_m;

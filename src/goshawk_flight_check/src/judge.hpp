@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -12,14 +13,16 @@ namespace goshawk::flight_check {
 /// is a real number: 2.25 is a quarter of the way from sample 2 to sample 3.
 class Motion {
  public:
-  /// @param reach_m of the body @pre at least one sample; times in order
-  Motion(std::span<const Sample> track, double reach_m);
+  /// @param reach_m of the body @param drift_m_s how fast points of what it flies beside move, at
+  /// most @pre at least one sample; times in order
+  Motion(std::span<const Sample> track, double reach_m, double drift_m_s = 0.0);
 
   double end() const { return double(track_.size() - 1); }
   Pose pose(double place) const;
   double t_s(double place) const;
 
-  /// [m] no point of the body moves farther than this from one place to a later one
+  /// [m] no point of the body moves farther than this from one place to a later one, as seen from
+  /// any point of what it flies beside
   double moved_m(double from, double to) const { return moved_m(to) - moved_m(from); }
 
   /// @return a place strictly between two others, about as far from both: a sample if there is one
@@ -42,8 +45,11 @@ class Motion {
 /// (c0 + c1 - L) / 2 leaves room for something that matters.
 class Judge {
  public:
+  /// The clearance of the body at a pose and a time [s], known not to be above a bound [m].
+  using Measure = std::function<Clearance(const Pose& pose, double t_s, double at_most_m)>;
+
   /// @param below_m [m] clearances that are not below this do not matter
-  Judge(const ClearanceMeter& meter, const Motion& motion, double tolerance_m, double below_m);
+  Judge(Measure measure, const Motion& motion, double tolerance_m, double below_m);
 
   Verdict run();
 
@@ -59,7 +65,7 @@ class Judge {
   double smallest_that_matters_m() const;
   void record_contact(const Measured& at);
 
-  const ClearanceMeter& meter_;
+  Measure measure_;
   const Motion& motion_;
   double tolerance_m_;
   double below_m_;

@@ -92,6 +92,7 @@ void Watch::forget_track() {
   track_.clear();
   last_.reset();
   touching_ = false;
+  touching_movers_.clear();
 }
 
 void Watch::end_track(const std::string& why) {
@@ -130,6 +131,7 @@ double Watch::below_m() const {
 void Watch::judge_flown() {
   if (track_.size() < 2) return;
   const auto track = std::exchange(track_, {track_.back()});
+  judge_movers(track);
   if (!check_) return;
   const auto verdict = check_->judge(track, below_m());
   if (!verdict) {
@@ -141,9 +143,29 @@ void Watch::judge_flown() {
   if (leg_ && (!leg_->flown || is_worse(*verdict, *leg_->flown))) leg_->flown = *verdict;
 }
 
+// A contact that goes on is told once.
+void Watch::judge_movers(std::span<const Sample> track) {
+  if (!movers_) return;
+  auto verdict = movers_->judge(track);
+  if (!verdict) return;  // judge_flown() tells of a track that cannot be judged
+  const bool is_news = std::ranges::any_of(
+      verdict->touched, [&](std::uint64_t id) { return !touching_movers_.contains(id); });
+  touching_movers_ = {verdict->touched.begin(), verdict->touched.end()};
+  if (is_news) {
+    findings_.push_back(
+        {Kind::mover, newest_id_, fail(ErrorCode::collision, verdict->sentence()), *verdict});
+  }
+  if (!leg_) return;
+  if (leg_->movers) {
+    leg_->movers->add(*verdict);
+  } else {
+    leg_->movers = *std::move(verdict);
+  }
+}
+
 void Watch::finish_leg() {
   if (!leg_ || !leg_->flown) return;
-  findings_.push_back({Kind::flown, leg_->id, *leg_->flown});
+  findings_.push_back({Kind::flown, leg_->id, *leg_->flown, leg_->movers});
   leg_.reset();
 }
 

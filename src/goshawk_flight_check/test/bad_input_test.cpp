@@ -147,7 +147,7 @@ TEST_F(BadInput, EveryParameterIsDescribedAndItsDefaultIsInRange) {
       EXPECT_TRUE(range.contains(value));
     }
   });
-  EXPECT_EQ(parameters, 8);
+  EXPECT_EQ(parameters, 10);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 namespace goshawk::flight_report {
@@ -54,6 +55,10 @@ Status check_leg(const Leg& leg, const std::string& name) {
       return wrong(name + ": " + status.error().message);
     }
   }
+  if (!std::isfinite(leg.stop_after_s)) return wrong(name + " has a stop that is not finite");
+  if (!leg.nominal.pieces.empty() && !leg.nominal.check()) {
+    return wrong(name + " has a bad nominal part");
+  }
   if (leg.trajectory.pieces.empty()) return success();
   if (auto status = leg.trajectory.check(); !status) {
     return wrong(name + " has a bad trajectory: " + status.error().message);
@@ -75,6 +80,14 @@ Status check_flown(const std::vector<FlownSample>& flown) {
       return wrong(name + " has a number that is not finite or beyond 1e6");
     }
     if (i > 0 && s.t_s < flown[i - 1].t_s) return wrong(name + " goes back in time");
+  }
+  return success();
+}
+
+Status check_maps(const std::vector<MapMoment>& maps) {
+  for (const MapMoment& moment : maps) {
+    if (!std::isfinite(moment.t_s)) return wrong("a map has a time that is not finite");
+    if (auto status = check_grid(&moment.grid, "maps"); !status) return status;
   }
   return success();
 }
@@ -102,6 +115,10 @@ Leg Leg::of(const CommittedTrajectory& committed, std::int64_t origin_ns) {
   leg.start_t_s = double(committed.start_time_ns() - origin_ns) * 1e-9;
   leg.yaw_rad = committed.yaw_rad();
   leg.yaw_curve = committed.yaw_curve();
+  if (const auto& stop = committed.stop()) {
+    leg.stop_after_s = stop->after_s;
+    leg.nominal = committed.nominal().trajectory();
+  }
   return leg;
 }
 
@@ -113,6 +130,9 @@ Status Flight::check() const {
   if (auto status = check_grid(obstacles, "obstacles"); !status) return status;
   if (auto status = check_grid(grown, "grown obstacles"); !status) return status;
   if (auto status = check_flown(flown); !status) return status;
+  if (auto status = check_maps(maps); !status) return status;
+  if (auto status = check_movers(movers, predictions); !status)
+    return wrong(status.error().message);
   if (!usable(goals_map)) return wrong("a goal is not finite or beyond 1e6 m");
   bool anything = !flown.empty() || obstacles != nullptr || grown != nullptr;
   for (std::size_t i = 0; i < legs.size(); ++i) {
@@ -137,6 +157,32 @@ std::vector<Vec3> Flight::stops_map() const {
     stops = {flown.front().position_map, flown.back().position_map};
   }
   return stops;
+}
+
+std::vector<FollowedLeg> Flight::followed() const {
+  std::vector<FollowedLeg> parts;
+  double next_s = std::numeric_limits<double>::infinity();
+  for (auto leg = legs.rbegin(); leg != legs.rend(); ++leg) {
+    if (leg->trajectory.pieces.empty()) continue;
+    const double whole_s = leg->trajectory.duration_s(), most_s = next_s - leg->start_t_s;
+    next_s = std::min(next_s, leg->start_t_s);
+    if (most_s <= 0.0) continue;
+    const bool whole = most_s >= whole_s;
+    parts.push_back({&*leg, whole ? leg->trajectory : leg->trajectory.until(most_s),
+                     std::min(most_s, whole_s), whole});
+  }
+  std::ranges::reverse(parts);
+  return parts;
+}
+
+std::vector<const Leg*> Flight::kept_legs() const {
+  const auto parts = followed();
+  std::vector<const Leg*> kept;
+  for (const Leg& leg : legs) {
+    const auto is_it = [&](const FollowedLeg& part) { return part.leg == &leg && part.whole; };
+    if (leg.trajectory.pieces.empty() || std::ranges::any_of(parts, is_it)) kept.push_back(&leg);
+  }
+  return kept;
 }
 
 std::optional<FlatState> Flight::planned_at(double t_s) const {

@@ -29,45 +29,60 @@ std::uint32_t pixel_of(const Color& c) {
   return byte(c.r) << 16 | byte(c.g) << 8 | byte(c.b);
 }
 
-/// What a column of voxels is at the heights flown.
+/// What a column of voxels is at the heights flown nearby.
 enum class Column { unknown, free, blocked };
+
+/// Where the vehicle flew, as far as it matters for heights; of a map without a track nothing.
+std::vector<Vec3> guide_of(const MapMoment& last) {
+  constexpr std::size_t kMostPlaces = 100;
+  std::vector<Vec3> guide;
+  const std::size_t step = last.track_map.size() / kMostPlaces + 1;
+  for (std::size_t i = 0; i < last.track_map.size(); i += step) guide.push_back(last.track_map[i]);
+  return guide;
+}
 
 /// A grid from above.
 class FromAbove {
  public:
-  FromAbove(const VoxelGrid& grid, const Interval& heights) : grid_(grid) {
-    const GridGeometry& g = grid.geometry;
-    const auto layer = [&](double z) {
-      const double at = std::floor((z - g.origin_map.z()) / g.resolution_m);
-      return int(std::clamp(at, 0.0, double(g.size.z - 1)));
-    };
-    first_ = layer(heights.lo);
-    last_ = layer(heights.hi);
-  }
+  FromAbove(const VoxelGrid& grid, const std::vector<Vec3>& guide)
+      : grid_(grid), obstacles_(grid.raw.empty() ? grid.grown : grid.raw), guide_(guide) {}
 
-  Column at(int x, int y) const {
+  /// At a point of the map; unknown outside of the grid.
+  Column at(double x_m, double y_m) const {
+    const GridGeometry& g = grid_.geometry;
+    const int x = int(std::floor((x_m - g.origin_map.x()) / g.resolution_m));
+    const int y = int(std::floor((y_m - g.origin_map.y()) / g.resolution_m));
+    if (x < 0 || y < 0 || x >= g.size.x || y >= g.size.y) return Column::unknown;
+    const auto [first, last] = layers_at(x_m, y_m);
     Column column = Column::unknown;
-    for (int z = first_; z <= last_; ++z) {
+    for (int z = first; z <= last; ++z) {
       const Index3 i{x, y, z};
       if (!grid_.is_known(i)) continue;
-      if (grid_.grown.test(i)) return Column::blocked;
+      if (obstacles_.test(i)) return Column::blocked;
       column = Column::free;
     }
     return column;
   }
 
-  /// At a point of the map; unknown outside of the grid.
-  Column at_point(double x_m, double y_m) const {
+ private:
+  /// About the height of the nearest place that was flown through.
+  std::pair<int, int> layers_at(double x_m, double y_m) const {
     const GridGeometry& g = grid_.geometry;
-    const int x = int(std::floor((x_m - g.origin_map.x()) / g.resolution_m));
-    const int y = int(std::floor((y_m - g.origin_map.y()) / g.resolution_m));
-    const bool inside = x >= 0 && y >= 0 && x < g.size.x && y < g.size.y;
-    return inside ? at(x, y) : Column::unknown;
+    if (guide_.empty()) return {0, g.size.z - 1};
+    const Vec2 here(x_m, y_m);
+    const double height_m = std::ranges::min_element(guide_, {}, [&](const Vec3& p) {
+                              return (p.head<2>() - here).squaredNorm();
+                            })->z();
+    const auto layer = [&](double z_m) {
+      const double at = std::floor((z_m - g.origin_map.z()) / g.resolution_m);
+      return int(std::clamp(at, 0.0, double(g.size.z - 1)));
+    };
+    return {layer(height_m - kHalfHeight_m), layer(height_m + kHalfHeight_m)};
   }
 
- private:
   const VoxelGrid& grid_;
-  int first_ = 0, last_ = 0;
+  const BitGrid& obstacles_;
+  const std::vector<Vec3>& guide_;
 };
 
 Color color_of(Column now, Column before) {
@@ -82,18 +97,18 @@ Color color_of(Column now, Column before) {
   return before == Column::blocked ? kBlocked : kLearntBlocked;
 }
 
-Image image_of(const MapMoment& now, const MapMoment* before, const Interval& heights) {
+Image image_of(const MapMoment& now, const MapMoment* before, const std::vector<Vec3>& guide) {
   const GridGeometry& g = now.grid.geometry;
-  const FromAbove seen(now.grid, heights);
+  const FromAbove seen(now.grid, guide);
   std::optional<FromAbove> old;
-  if (before != nullptr) old.emplace(before->grid, heights);
+  if (before != nullptr) old.emplace(before->grid, guide);
   Image image{g.size.x, {}};
   image.pixels.reserve(std::size_t(g.size.x) * std::size_t(g.size.y));
   for (int y = g.size.y - 1; y >= 0; --y) {
     for (int x = 0; x < g.size.x; ++x) {
       const Vec3 p = g.origin_map + g.resolution_m * Vec3(x + 0.5, y + 0.5, 0.0);
-      const Column was = old ? old->at_point(p.x(), p.y()) : Column::unknown;
-      image.pixels.push_back(pixel_of(color_of(seen.at(x, y), was)));
+      const Column was = old ? old->at(p.x(), p.y()) : Column::unknown;
+      image.pixels.push_back(pixel_of(color_of(seen.at(p.x(), p.y()), was)));
     }
   }
   return image;
@@ -118,23 +133,15 @@ Status check(std::span<const MapMoment> moments) {
   return success();
 }
 
-/// The heights that the vehicle flew at; of a map without a track all.
-Interval heights_of(const MapMoment& last) {
-  if (last.track_map.empty()) return along(last.grid.geometry, 2);
-  Interval heights{last.track_map.front().z(), last.track_map.front().z()};
-  for (const Vec3& p : last.track_map) heights.include(p.z());
-  return {heights.lo - kHalfHeight_m, heights.hi + kHalfHeight_m};
-}
-
 void draw_panel(Plot& plot, const MapMoment& now, const MapMoment* before,
-                const Interval& heights) {
+                const std::vector<Vec3>& guide) {
   const Interval u = along(now.grid.geometry, 0), v = along(now.grid.geometry, 1);
   plot.line({{plot.u().lo, plot.v().lo},
              {plot.u().hi, plot.v().lo},
              {plot.u().hi, plot.v().hi},
              {plot.u().lo, plot.v().hi}},
             {kClear, 0.0}, kUnseen);
-  plot.image(u, v, image_of(now, before, heights));
+  plot.image(u, v, image_of(now, before, guide));
   plot.line({{u.lo, v.lo}, {u.hi, v.lo}, {u.hi, v.hi}, {u.lo, v.hi}, {u.lo, v.lo}}, kWindow);
   std::vector<Vec2> track;
   for (const Vec3& p : now.track_map) track.push_back({p.x(), p.y()});
@@ -142,16 +149,19 @@ void draw_panel(Plot& plot, const MapMoment& now, const MapMoment* before,
   if (!track.empty()) plot.dot(track.back(), 5.0, kFlown, {kWhite, 1.5});
 }
 
-void explain(Plot& plot, const Interval& heights) {
+void explain(Plot& plot, const MapMoment& last) {
   constexpr Color kEdge{0.6, 0.62, 0.65};
   plot.explain_box("unknown", kUnseen, kEdge);
   plot.explain_box("free", kWhite, kEdge);
-  plot.explain_box("blocked", kBlocked, kEdge);
+  const bool raw = !last.grid.raw.empty();
+  plot.explain_box(raw ? "obstacle" : "blocked for its centre", kBlocked, kEdge);
   plot.explain_box("free since the panel before", kLearnt, kEdge);
-  plot.explain_box("blocked since then", kLearntBlocked, kEdge);
+  plot.explain_box(raw ? "obstacle since then" : "blocked since then", kLearntBlocked, kEdge);
   plot.explain_line("window of the map", kWindow);
   plot.explain_line("flown", kWay);
-  plot.note(fmt::format("z from {:.1f} to {:.1f} m", heights.lo, heights.hi));
+  plot.note(last.track_map.empty()
+                ? "at any height"
+                : fmt::format("within {:g} m of the height flown nearby", kHalfHeight_m));
 }
 
 }  // namespace
@@ -165,7 +175,7 @@ Status draw_growth(std::span<const MapMoment> moments, const std::filesystem::pa
       all->include(along(m.grid.geometry, axis).hi);
     }
   }
-  const Interval heights = heights_of(moments.back());
+  const std::vector<Vec3> guide = guide_of(moments.back());
   const int panels = int(moments.size());
   const int columns = panels <= 2 ? panels : panels <= 4 ? 2 : 3;
   const int rows = (panels + columns - 1) / columns;
@@ -178,11 +188,11 @@ Status draw_growth(std::span<const MapMoment> moments, const std::filesystem::pa
     const Vec2 corner(kBetween_px + (k % columns) * (size.x() + kBetween_px),
                       kHead_px + (k / columns) * (size.y() + kHead_px + kBetween_px));
     Plot plot(sheet, corner, size, u, v);
-    draw_panel(plot, now, k > 0 ? &moments[std::size_t(k) - 1] : nullptr, heights);
+    draw_panel(plot, now, k > 0 ? &moments[std::size_t(k) - 1] : nullptr, guide);
     plot.axes("x [m]", "y [m]");
     sheet.text(corner - Vec2(0.0, 20.0), fmt::format("after {:.1f} s", now.t_s),
                {.size_px = 15.0, .bold = true});
-    if (k == columns - 1) explain(plot, heights);
+    if (k == columns - 1) explain(plot, moments.back());
   }
   return sheet.save(png);
 }

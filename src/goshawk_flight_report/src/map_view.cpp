@@ -50,11 +50,11 @@ Layout lay_out(const View& view, const Interval& u, const Interval& v) {
   return layout;
 }
 
-double fastest_m_s(const Flight& flight) {
-  double fastest = flight.limits.v_max_m_s;
-  for (const Leg& leg : flight.legs) {
-    if (leg.trajectory.pieces.empty()) continue;
-    fastest = std::max(fastest, leg.trajectory.peaks().speed_m_s);
+/// [m/s] the top of the scale of speeds.
+double fastest_m_s(const std::vector<FollowedLeg>& followed, double v_max_m_s) {
+  double fastest = v_max_m_s;
+  for (const FollowedLeg& part : followed) {
+    fastest = std::max(fastest, part.trajectory.peaks().speed_m_s);
   }
   return fastest;
 }
@@ -67,7 +67,9 @@ class MapPicture {
         sheet_(int(kLeft_px + layout.size_px.x() + kLegend_px),
                int(kTop_px + std::max(layout.size_px.y(), 310.0) + kBottom_px)),
         plot_(sheet_, {kLeft_px, kTop_px}, layout.size_px, layout.u, layout.v),
-        fastest_m_s_(fastest_m_s(flight)) {
+        followed_(flight.followed()),
+        kept_(flight.kept_legs()),
+        fastest_m_s_(fastest_m_s(followed_, flight.limits.v_max_m_s)) {
     const ObstacleImage cells = obstacle_image(flight.obstacles, flight.grown, view_, layout.u,
                                                layout.v, guide(flight), flight.body_radius_m);
     plot_.image(cells.u, cells.v, cells.image);
@@ -75,15 +77,16 @@ class MapPicture {
         layout.stretch > 1 ? fmt::format(", stretched {} times", layout.stretch) : "";
     plot_.axes(fmt::format("{} [m]", "xyz"[view_.u]),
                fmt::format("{} [m]{}", "xyz"[view_.v], stretched));
-    for (const Leg& leg : flight.legs) corridor(leg);
-    for (const Leg& leg : flight.legs) {
-      plot_.line(seen(leg.raw_path_map), kRawPath);
-      plot_.line(seen(leg.waypoints_map), kPruned);
+    // Of plans that newer ones replaced in flight, only what was followed is drawn.
+    for (const Leg* leg : kept_) corridor(*leg);
+    for (const Leg* leg : kept_) {
+      plot_.line(seen(leg->raw_path_map), kRawPath);
+      plot_.line(seen(leg->waypoints_map), kPruned);
     }
-    for (const Leg& leg : flight.legs) trajectory(leg.trajectory);
+    for (const FollowedLeg& part : followed_) trajectory(part.trajectory);
     flown();
-    for (const Leg& leg : flight.legs) {
-      for (const Vec3& p : leg.waypoints_map) plot_.dot(seen(p), kWaypoint_px, kWhite, kPruned);
+    for (const Leg* leg : kept_) {
+      for (const Vec3& p : leg->waypoints_map) plot_.dot(seen(p), kWaypoint_px, kWhite, kPruned);
     }
     ends();
     sheet_.text({kLeft_px, 26.0}, flight.title, kTitle);
@@ -109,9 +112,8 @@ class MapPicture {
   }
 
   void trajectory(const Trajectory& trajectory) {
-    if (trajectory.pieces.empty()) return;
     const auto states =
-        sampled(trajectory, int(std::clamp(trajectory.duration_s() * 50.0, 50.0, 4000.0)));
+        sampled(trajectory, int(std::clamp(trajectory.duration_s() * 50.0, 5.0, 4000.0)));
     for (std::size_t i = 0; i + 1 < states.size(); ++i) {
       // A little longer than the step: no seams between neighbours.
       const Vec2 from = seen(states[i].position);
@@ -153,19 +155,19 @@ class MapPicture {
       if (!map->known.empty()) plot_.explain_box("not measured", kUnknown, kEdge);
       plot_.leave_gap(8.0);
     }
-    const auto any = [&](auto&& has) { return std::ranges::any_of(flight_.legs, has); };
-    if (any([](const Leg& leg) { return !leg.corridor.empty(); })) {
+    const auto any = [&](auto&& has) { return std::ranges::any_of(kept_, has); };
+    if (any([](const Leg* leg) { return !leg->corridor.empty(); })) {
       plot_.explain_box("safe corridor", {kCorridor.r, kCorridor.g, kCorridor.b, 0.2},
                         kCorridorEdge);
     }
-    if (any([](const Leg& leg) { return !leg.raw_path_map.empty(); })) {
+    if (any([](const Leg* leg) { return !leg->raw_path_map.empty(); })) {
       plot_.explain_line("voxel path", kRawPath);
     }
-    if (any([](const Leg& leg) { return !leg.waypoints_map.empty(); })) {
+    if (any([](const Leg* leg) { return !leg->waypoints_map.empty(); })) {
       plot_.explain_line("pruned path", kPruned, kWaypoint_px);
     }
     if (!flight_.flown.empty()) plot_.explain_line("flown", kTrack);
-    if (any([](const Leg& leg) { return !leg.trajectory.pieces.empty(); })) {
+    if (!followed_.empty()) {
       plot_.leave_gap(8.0);
       plot_.explain_scale("planned trajectory, speed [m/s]", fastest_m_s_, speed_color);
     }
@@ -175,6 +177,8 @@ class MapPicture {
   View view_;
   Sheet sheet_;
   Plot plot_;
+  std::vector<FollowedLeg> followed_;
+  std::vector<const Leg*> kept_;
   double fastest_m_s_;
 };
 

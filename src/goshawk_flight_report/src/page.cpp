@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "file.hpp"
+#include "map_growth.hpp"
+#include "runs.hpp"
 
 namespace goshawk::flight_report {
 namespace {
@@ -17,53 +19,6 @@ using Json = nlohmann::basic_json<nlohmann::ordered_map, std::vector, std::strin
 
 constexpr double kLeastStep_s = 0.02;  // between samples of the track: a page need not weigh more
 constexpr std::string_view kMark = "@FLIGHT@";
-
-std::string base64(const std::string& bytes) {
-  static constexpr char kDigits[] =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve(bytes.size() / 3 * 4 + 4);
-  for (std::size_t k = 0; k < bytes.size(); k += 3) {
-    std::uint32_t word = 0;
-    const std::size_t count = std::min<std::size_t>(3, bytes.size() - k);
-    for (std::size_t i = 0; i < 3; ++i) {
-      word = word << 8 | (i < count ? static_cast<unsigned char>(bytes[k + i]) : 0U);
-    }
-    for (std::size_t i = 0; i < 4; ++i) {
-      text += i <= count ? kDigits[word >> (18 - 6 * i) & 63] : '=';
-    }
-  }
-  return text;
-}
-
-void append_leb128(std::string& bytes, std::uint64_t value) {
-  for (; value > 127; value >>= 7) bytes += static_cast<char>((value & 127) | 128);
-  bytes += static_cast<char>(value);
-}
-
-// Lengths of free and occupied runs in turn, x fastest, beginning with free: maps are mostly runs.
-std::string runs_of(const BitGrid& grid) {
-  std::string bytes;
-  const Index3 size = grid.size();
-  bool value = false;
-  std::uint64_t length = 0;
-  for (int z = 0; z < size.z; ++z) {
-    for (int y = 0; y < size.y; ++y) {
-      const BitGrid::Word* row = grid.row(y, z);
-      for (int x = 0; x < size.x; ++x) {
-        const bool bit = (row[x >> 6] >> (x & 63)) & 1U;
-        if (bit != value) {
-          append_leb128(bytes, length);
-          length = 0;
-          value = bit;
-        }
-        ++length;
-      }
-    }
-  }
-  append_leb128(bytes, length);
-  return bytes;
-}
 
 Json to_json(const Vec3& v) {
   return {v.x(), v.y(), v.z()};
@@ -81,7 +36,7 @@ Json to_json(const VoxelGrid* grid) {
   return {{"origin", to_json(g.origin_map)},
           {"resolution", g.resolution_m},
           {"size", {g.size.x, g.size.y, g.size.z}},
-          {"runs", base64(runs_of(grid->grown))}};
+          {"runs", runs_of(grid->grown)}};
 }
 
 Json to_json(const Polytope& polytope) {
@@ -101,15 +56,80 @@ Json to_json(const BezierPiece& piece) {
   return {{"duration", piece.duration_s}, {"points", points}};
 }
 
+Json to_json(const std::vector<BezierPiece>& pieces) {
+  Json list = Json::array();
+  for (const BezierPiece& piece : pieces) list.push_back(to_json(piece));
+  return list;
+}
+
 Json to_json(const Leg& leg) {
-  Json corridor = Json::array(), pieces = Json::array();
+  Json corridor = Json::array();
   for (const Polytope& polytope : leg.corridor) corridor.push_back(to_json(polytope));
-  for (const BezierPiece& piece : leg.trajectory.pieces) pieces.push_back(to_json(piece));
   return {{"start", leg.start_t_s},
           {"raw", to_json(leg.raw_path_map)},
           {"waypoints", to_json(leg.waypoints_map)},
           {"corridor", corridor},
-          {"pieces", pieces}};
+          {"pieces", to_json(leg.trajectory.pieces)},
+          {"stop_after", leg.stop_after_s},
+          {"nominal", to_json(leg.nominal.pieces)}};
+}
+
+/// Each moment as what changed since the one before.
+Json growth_json(const std::vector<MapMoment>& maps) {
+  const MapGrowth growth = growth_of(maps);
+  if (growth.changes.size() < 2) return nullptr;  // it did not grow
+  Json moments = Json::array();
+  for (const auto& change : growth.changes) {
+    const Index3 at = change.window, size = change.window_size;
+    moments.push_back({{"t", change.t_s},
+                       {"window", {at.x, at.y, at.z, size.x, size.y, size.z}},
+                       {"obstacles", change.obstacles},
+                       {"known", change.known}});
+  }
+  const auto& g = growth.geometry;
+  return {{"origin", to_json(g.origin_map)},
+          {"resolution", g.resolution_m},
+          {"size", {g.size.x, g.size.y, g.size.z}},
+          {"moments", moments}};
+}
+
+Json to_json(const Quaternion& q) {
+  return {q.w(), q.x(), q.y(), q.z()};
+}
+
+Json to_json(const MovingBox& box) {
+  return {{"id", box.id},
+          {"kind", box.kind},
+          {"p", to_json(box.center_map)},
+          {"q", to_json(box.q_map_box)},
+          {"half", to_json(box.half_extents_m)}};
+}
+
+Json to_json(const PredictedBox& box) {
+  Json track = Json::array();
+  for (const auto& piece : box.track) {
+    track.push_back(
+        {{"duration", piece.duration_s}, {"points", to_json(piece.control_points_map)}});
+  }
+  return {{"id", box.id},
+          {"q", to_json(box.q_map_box)},
+          {"half", to_json(box.half_extents_m)},
+          {"track", track},
+          {"error", box.error_m},
+          {"error_rate", box.error_rate_m_s},
+          {"valid_until", box.valid_until_s}};
+}
+
+/// @param moments of moving boxes or of predictions
+template <typename Moments>
+Json boxes_json(const Moments& moments) {
+  Json list = Json::array();
+  for (const auto& moment : moments) {
+    Json boxes = Json::array();
+    for (const auto& box : moment.boxes) boxes.push_back(to_json(box));
+    list.push_back({{"t", moment.t_s}, {"boxes", boxes}});
+  }
+  return list;
 }
 
 std::vector<FlownSample> thinned(const std::vector<FlownSample>& flown) {
@@ -154,6 +174,9 @@ Result<std::string> flight_json(const Flight& flight, const std::string& summary
       {"flown", to_json(flight.flown)},
       {"obstacles", to_json(flight.obstacles)},
       {"grown", to_json(flight.grown)},
+      {"growth", growth_json(flight.maps)},
+      {"movers", boxes_json(flight.movers)},
+      {"predictions", boxes_json(flight.predictions)},
       {"summary", summary}};
   // "<" could end the script element that the JSON stands in.
   std::string text;

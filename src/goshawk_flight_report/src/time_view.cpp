@@ -36,10 +36,9 @@ struct Curve {
 Interval time_span(const Flight& flight) {
   Interval span{1e300, -1e300};
   for (const FlownSample& s : flight.flown) span.include(s.t_s);
-  for (const Leg& leg : flight.legs) {
-    if (leg.trajectory.pieces.empty()) continue;
-    span.include(leg.start_t_s);
-    span.include(leg.start_t_s + leg.trajectory.duration_s());
+  for (const FollowedLeg& part : flight.followed()) {
+    span.include(part.leg->start_t_s);
+    span.include(part.leg->start_t_s + part.duration_s);
   }
   if (span.length() < 1e-6) span.hi = span.lo + 1.0;
   return span;
@@ -161,9 +160,9 @@ class TimePicture {
     Plot plot(sheet_, {kLeft_px, top}, {kWidth_px - kLeft_px - kLegend_px, kPanel_px}, span_,
               values(curves, limit));
     plot.axes(last ? "time [s]" : "", label);
-    for (const Leg& leg : flight_.legs) {
-      if (leg.trajectory.pieces.empty()) continue;
-      for (const double t_s : {leg.start_t_s, leg.start_t_s + leg.trajectory.duration_s()}) {
+    for (const Leg* leg : kept_) {
+      if (leg->trajectory.pieces.empty()) continue;
+      for (const double t_s : {leg->start_t_s, leg->start_t_s + leg->trajectory.duration_s()}) {
         plot.line({{t_s, plot.v().lo}, {t_s, plot.v().hi}}, kLegBorder);
       }
     }
@@ -190,6 +189,7 @@ class TimePicture {
   }
 
   const Flight& flight_;
+  std::vector<const Leg*> kept_ = flight_.kept_legs();
   Interval span_;
   Sheet sheet_;
   int drawn_ = 0;

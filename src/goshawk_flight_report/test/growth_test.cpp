@@ -71,6 +71,20 @@ TEST_F(Growth, ShowsWhatIsKnownAndWhatWasLearntSinceThePanelBefore) {
   EXPECT_NEAR(double(pixels_of(png_, kLearnt)) / learnt, 11.0 / 5.0, 0.4);
 }
 
+TEST_F(Growth, ObstaclesAsMeasuredAtTheHeightFlownNearbyAreDrawn) {
+  MapMoment climbs = moment(0.0, 20);
+  climbs.grid.raw = BitGrid(climbs.grid.geometry.size, false);
+  for (int y = 0; y < 10; ++y) {
+    climbs.grid.raw.set({4, y, 1}, true);   // below the flight there
+    climbs.grid.raw.set({15, y, 3}, true);  // at its height there
+  }
+  climbs.track_map.clear();
+  for (int x = 0; x < 20; ++x) climbs.track_map.emplace_back(x + 0.5, 5.0, x < 10 ? 2.5 : 3.5);
+  ASSERT_TRUE(draw_growth({&climbs, 1}, png_));
+  const int one_column = pixels_of(png_, kLearntBlocked), learnt = pixels_of(png_, kLearnt);
+  EXPECT_NEAR(double(learnt) / one_column, 19.0, 4.0);  // the wall at x = 2 is grown, not measured
+}
+
 TEST_F(Growth, AWindowThatMovedIsDrawnInItsPlace) {
   std::vector<MapMoment> moments{moment(0.0, 6), moment(4.0, 6)};
   moments[1].grid.geometry.origin_map = Vec3(20.0, 0.0, 0.0);

@@ -43,7 +43,8 @@ TEST_F(Page, HoldsTheFlightInPlaceOfTheMark) {
             "\"stops\":[[1.0,2.0,3.0],[1.25,2.0,3.0]],\"flown\":{\"t\":[0.0,0.02],"
             "\"p\":[1.0,2.0,3.0,1.25,2.0,3.0],\"v\":[0.5,0.0,0.0,0.5,0.0,0.0],"
             "\"q\":[1.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0]},"
-            "\"obstacles\":null,\"grown\":null,\"summary\":{\"verdict\":\"\\u003csafe>\"}}<after>");
+            "\"obstacles\":null,\"grown\":null,\"growth\":null,\"movers\":[],\"predictions\":[],"
+            "\"summary\":{\"verdict\":\"\\u003csafe>\"}}<after>");
 }
 
 TEST_F(Page, WritesTheMapAsRuns) {

@@ -58,7 +58,7 @@ closed_loop::Setup setup_of(const Scene& scene, const Options& options) {
 Result<LiveMapper> mapper_of(const Scene& scene, const Options& options) {
   auto world = to_sensor_world(scene.solids);
   if (!world) return world.error();
-  return LiveMapper::create({.sensor = league_lidar(options.range_noise_m, options.seed),
+  return LiveMapper::create({.sensor = league_lidar(options),
                              .box = scene.box,
                              .resolution_m = kResolution_m,
                              .inflation_m = kInflation_m,
@@ -82,12 +82,17 @@ class Flight {
     if (mapper_ != nullptr) lab_.run(kLook_s);
     begin_ns_ = lab_.now_ns();
     if (auto status = lab_.goal(scene_.goal); !status) {
+      outcome_.code = status.code();
       outcome_.reason = status.error().message;
       return std::move(outcome_);
     }
     lab_.run(scene_.longest_s, [this] { return is_over(); });
     outcome_.arrived = is_there();
-    if (!outcome_.arrived) outcome_.reason = why_not();
+    if (!outcome_.arrived) {
+      const Error why = why_not();
+      outcome_.code = why.code;
+      outcome_.reason = why.message;
+    }
     outcome_.time_s = lab_.now_s() - double(*begin_ns_) * 1e-9;
     outcome_.max_error_m = lab_.max_error_m();
     outcome_.plans = lab_.plans();
@@ -137,7 +142,7 @@ class Flight {
       changed = seen && *seen;
       if (!seen) blind = seen.error();
     });
-    if (blind && outcome_.reason.empty()) outcome_.reason = blind->message;
+    if (blind && !blind_) blind_ = blind;
     if (!changed) return;
     outcome_.scan_s.push_back(took_s);
     lab_.in(took_s + kMessage_s, [this, map = mapper_->map()] { lab_.set_map(map); });
@@ -150,10 +155,11 @@ class Flight {
            (lab_.position() - scene_.goal).norm() < kThere_m && lab_.speed() < kAtRest_m_s;
   }
   bool is_over() { return is_there() || lab_.state().state == navigator::State::failed; }
-  std::string why_not() const {
-    if (!outcome_.reason.empty()) return outcome_.reason;
-    if (lab_.state().state == navigator::State::failed) return lab_.state().reason.message;
-    return fmt::format("not there after {:g} s", scene_.longest_s);
+  Error why_not() const {
+    if (blind_) return *blind_;
+    if (lab_.state().state == navigator::State::failed) return lab_.state().reason;
+    return fail(ErrorCode::deadline_exceeded,
+                fmt::format("not there after {:g} s", scene_.longest_s));
   }
 
   const Scene& scene_;
@@ -164,12 +170,17 @@ class Flight {
   bool moved_ = false;
   std::size_t losses_ = 0, refusals_ = 0, failures_ = 0;  // noted
   std::string reason_;
+  std::optional<Error> blind_;  // why there was no scan
   Outcome outcome_;
 };
 
 }  // namespace
 
-sensors::SensorParameters league_lidar(double range_noise_m, std::uint64_t seed) {
+double plan_clearance_m() {
+  return kInflation_m + kReserve_m;
+}
+
+sensors::SensorParameters league_lidar(const Options& options) {
   sensors::SensorParameters lidar;
   lidar.pattern.rate_hz = 10.0;
   lidar.pattern.channels = 64;
@@ -177,10 +188,11 @@ sensors::SensorParameters league_lidar(double range_noise_m, std::uint64_t seed)
   lidar.pattern.elevation_lower_rad = -45.0 * sensors::kDegree;
   lidar.pattern.elevation_upper_rad = 45.0 * sensors::kDegree;
   lidar.returns.range_min_m = 0.1;
-  lidar.returns.range_max_m = 30.0;
-  lidar.returns.range_noise_m = range_noise_m;
+  lidar.pattern.azimuth_width_rad = options.view_rad;
+  lidar.returns.range_max_m = options.range_m;
+  lidar.returns.range_noise_m = options.range_noise_m;
   lidar.mount.z_m = 0.0;
-  lidar.seed = int(seed % 1'000'000);
+  lidar.seed = int(options.seed % 1'000'000);
   return lidar;
 }
 

@@ -12,7 +12,8 @@ namespace {
 // Off the map's raster: walls on the faces of voxels would flicker between two of them.
 const Vec3 kOffRaster(0.07, 0.06, 0.05);
 
-/// The faces of a box, as walls around it.
+}  // namespace
+
 void enclose(Scene& scene, double height_m) {
   constexpr double kThick_m = 0.5;
   const Vec3 lo = scene.box.lower_map, hi = scene.box.upper_map;
@@ -24,7 +25,6 @@ void enclose(Scene& scene, double height_m) {
   scene.solids.push_back(ground_below(scene.box));
 }
 
-/// Runs of occupied voxels along x, joined over rows and layers that have the same run.
 std::vector<Solid> to_boxes(const worlds::World& world) {
   BitGrid left = world.occupied;
   const Index3 size = world.geometry.size;
@@ -60,8 +60,6 @@ std::vector<Solid> to_boxes(const worlds::World& world) {
   }
   return boxes;
 }
-
-}  // namespace
 
 // A hall of 48 x 20 m with four walls across, each with one exit; before each, on the straight way
 // to the goal, a pocket of 5 m that is open only to where the vehicle comes from.

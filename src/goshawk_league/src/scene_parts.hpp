@@ -1,6 +1,7 @@
 #pragma once
 
 #include "goshawk/league/scene.hpp"
+#include "goshawk/worlds/world.hpp"
 
 namespace goshawk::league {
 
@@ -14,6 +15,12 @@ inline Solid column(double x_m, double y_m, double radius_m, double bottom_m, do
 }
 /// The ground below a scene, half a voxel below the map's lower face: on it, it would flicker.
 Solid ground_below(const map_server::Box& box);
+
+/// The faces of a scene's box, as walls around it, and the ground.
+void enclose(Scene& scene, double height_m);
+/// A world's obstacles: runs of occupied voxels along x, joined over rows and layers that have the
+/// same run. Shifted off the map's raster: walls on the faces of voxels would flicker between two.
+std::vector<Solid> to_boxes(const worlds::World& world);
 
 Limits per_axis(double v_m_s, double a_m_s2, double j_m_s3);
 

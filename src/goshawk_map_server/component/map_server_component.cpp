@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <spdlog/logger.h>
 
+#include <bit>
 #include <deque>
 #include <map>
 #include <optional>
@@ -33,6 +34,9 @@ namespace msg = goshawk_msgs::msg;
 
 // How often, at the most, the whole map is published anew for late joiners while scans come in.
 constexpr double kWholeMapPeriod_s = 1.0;
+// After the last change it is repeated 1, 2, 4, 8 and 16 periods later: DDS does not send it again
+// to a reader that was deaf for longer than its lease, while the map server heard it all the time.
+constexpr unsigned kLastRepeat = 16;
 // How long poses are kept: clouds that come later are refused.
 constexpr double kPosesKept_s = 5.0;
 constexpr std::size_t kMostWaiting = 8;   // clouds that wait for odometry
@@ -77,7 +81,7 @@ class MapServerComponent : public Component {
       output_.publish_world_if_asked(map_, config_.max_voxels);
     });
     node.every(kWholeMapPeriod_s, [this] {
-      if (changed_) publish_whole();
+      publish_whole_if_due();
       tell_of_journal();
     });
     publish_whole();
@@ -97,13 +101,16 @@ class MapServerComponent : public Component {
   void subscribe() {
     node_.subscribe<sensor_msgs::msg::PointCloud2>(
         "cloud_in", Qos::best_effort(2),
-        [this](const sensor_msgs::msg::PointCloud2& m, const MessageInfo&) { on_cloud(m); });
+        [this](const sensor_msgs::msg::PointCloud2& m, const MessageInfo&) { on_cloud(m); },
+        sensor("cloud_in"));
     node_.subscribe<sensor_msgs::msg::CameraInfo>(
         "depth_info_in", Qos::best_effort(2),
-        [this](const sensor_msgs::msg::CameraInfo& m, const MessageInfo&) { on_camera(m); });
+        [this](const sensor_msgs::msg::CameraInfo& m, const MessageInfo&) { on_camera(m); },
+        sensor("depth_info_in"));
     node_.subscribe<sensor_msgs::msg::Image>(
         "depth_in", Qos::best_effort(2),
-        [this](const sensor_msgs::msg::Image& m, const MessageInfo&) { on_depth(m); });
+        [this](const sensor_msgs::msg::Image& m, const MessageInfo&) { on_depth(m); },
+        sensor("depth_in"));
     node_.subscribe<octomap_msgs::msg::Octomap>(
         "octomap_in", Qos::reliable_last(1),
         [this](const octomap_msgs::msg::Octomap& m, const MessageInfo&) { on_map(m); });
@@ -117,6 +124,19 @@ class MapServerComponent : public Component {
     node_.subscribe<tf2_msgs::msg::TFMessage>(
         "/tf", Qos::best_effort(100),
         [this](const tf2_msgs::msg::TFMessage& m, const MessageInfo&) { on_frames(m, false); });
+  }
+
+  Writers sensor(const char* topic) const {
+    return config_.any_sensor ? Writers::any() : Writers::one(topic);
+  }
+
+  void publish_whole_if_due() {
+    if (changed_) periods_since_change_ = 0;
+    if (changed_ ||
+        (periods_since_change_ <= kLastRepeat && std::has_single_bit(periods_since_change_))) {
+      publish_whole();
+    }
+    if (periods_since_change_ <= kLastRepeat) ++periods_since_change_;
   }
 
   void publish_whole() {
@@ -175,6 +195,8 @@ class MapServerComponent : public Component {
     for (const auto& t : m.transforms()) {
       // The vehicle's own pose comes as odometry.
       if (t.child_frame_id() == conversions::kBodyFrame) continue;
+      // What a parameter says of the mount, nobody else says.
+      if (t.child_frame_id() == config_.sensor_frame) continue;
       const auto q = conversions::from_msg(t.transform().rotation());
       const Vec3 p = conversions::from_msg(t.transform().translation());
       if (!q || !is_finite(p)) {
@@ -351,6 +373,7 @@ class MapServerComponent : public Component {
   std::int64_t placed_ns_ = 0;   // end of the scan before; 0: none
   ErrorCode odometry_code_ = ErrorCode::ok;
   bool changed_ = false;
+  unsigned periods_since_change_ = kLastRepeat + 1;  // what was loaded does not change
   bool forgetting_ = false;
 };
 

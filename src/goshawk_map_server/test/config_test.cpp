@@ -32,7 +32,7 @@ TEST(Config, DefaultsAreValidAndEveryParameterIsDescribed) {
   Checker checker;
   describe(config, checker);
   EXPECT_TRUE(checker.all_valid);
-  EXPECT_EQ(checker.names.size(), 39U);
+  EXPECT_EQ(checker.names.size(), 40U);
 }
 
 TEST(Config, InflationIsRadiusPlusMarginAndTheBoxIsOnlyUsedOnDemand) {

@@ -197,7 +197,7 @@ void Navigator::on_map(std::shared_ptr<const VoxelGrid> grid, std::int64_t now_n
   }
   check_legs(now_ns);
   move_stop(now_ns);
-  improve(now_ns);
+  improve_by_new_map(now_ns);
 }
 
 // A goal that failed because of the map is taken up again when the map has changed since.
@@ -222,6 +222,7 @@ void Navigator::check_legs(std::int64_t now_ns) {
     const double from_s = double(from_ns - leg.start_ns()) * 1e-9;
     const double to_s = double(until_ns - leg.start_ns()) * 1e-9;
     if (!find_obstruction(space_, leg.committed.flown(), from_s, to_s)) continue;
+    if (&leg == schedule_.last() && stop_sooner(now_ns)) return;
     return blocked(check_against(space_, leg.committed, from_s).error(), now_ns);
   }
 }

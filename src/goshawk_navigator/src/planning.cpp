@@ -217,7 +217,10 @@ void Navigator::act_on(const Error& reason, std::int64_t now_ns) {
   const bool improves = open_->improves;
   drop_open();
   if (late && improves) latency_s_ = std::min(2.0 * latency_s_, config_.replan_lead_s);
-  if (improves) return;  // the next map, or the next moment, asks again
+  if (improves) {
+    superseded_by_map_ = false;
+    return;  // the next map, or the next moment, asks again
+  }
   if (remedy == Remedy::other_start || (late && from_motion)) {
     return try_other_start(reason, now_ns);
   }

@@ -91,17 +91,41 @@ void Navigator::move_stop(std::int64_t now_ns) {
   auto later = latest_stop(flown.nominal(), space_, from_s);
   if (!later) return;
   if (*later && (*later)->after_s < flown.stop()->after_s + kLaterStop_s) return;
+  commit_stop(*std::move(later));
+}
+
+// An obstacle was found before what is flown stops: it goes on as far as it is free, as the tracker
+// does by itself. @return whether a stop fits
+bool Navigator::stop_sooner(std::int64_t now_ns) {
+  if (!approaches()) return false;
+  const CommittedTrajectory& flown = schedule_.last()->committed;
+  if (!flown.stop()) return false;
+  const std::int64_t from_ns = std::max(now_ns, flown.start_time_ns());
+  const double from_s = double(from_ns - flown.start_time_ns()) * 1e-9;
+  if (from_s >= flown.stop()->after_s) return false;
+  auto sooner = latest_stop(flown.nominal(), space_, from_s);
+  if (!sooner || !*sooner) return false;
+  commit_stop(*std::move(sooner));
+  // Another plan is needed at once: the one that is awaited does not know of the obstacle.
+  if (open_ && open_->improves) drop_open();
+  improve_ns_ = now_ns;
+  return true;
+}
+
+// The nominal part that is flown, with another stop part.
+void Navigator::commit_stop(std::optional<StopPart> stop) {
+  const Leg& leg = *schedule_.last();
+  const CommittedTrajectory& flown = leg.committed;
   auto committed = CommittedTrajectory::make({.id = next_id_++,
                                               .nominal = flown.nominal(),
-                                              .stop = *std::move(later),
+                                              .stop = std::move(stop),
                                               .start_time_ns = flown.start_time_ns(),
                                               .map_version = map()->version,
                                               .yaw_rad = flown.yaw_rad(),
                                               .yaw_curve = flown.yaw_curve()});
   if (!committed) return;
   orders_.push_back(Commit{*committed, 0, flown.id()});
-  const double beyond_m = schedule_.last()->beyond_m;
-  schedule_.add({.committed = *std::move(committed), .beyond_m = beyond_m, .continues = true});
+  schedule_.add({.committed = *std::move(committed), .beyond_m = leg.beyond_m, .continues = true});
 }
 
 double Navigator::improvement_lead_s() const {
@@ -123,8 +147,21 @@ void Navigator::improve(std::int64_t now_ns) {
   open_->improves = true;
 }
 
+// At once, and not when the next plan is due. A plan that is awaited, and was asked for before this
+// map came, is superseded; but not twice in a row, so that maps that come faster than plans do not
+// keep all of them from being made.
+void Navigator::improve_by_new_map(std::int64_t now_ns) {
+  if (open_ && open_->improves && !pending_ && !superseded_by_map_) {
+    drop_open();
+    superseded_by_map_ = true;
+  }
+  if (!open_) improve_ns_ = now_ns;
+  improve(now_ns);
+}
+
 void Navigator::take_improvement(Commitment candidate, std::uint64_t number, std::int64_t now_ns) {
   const Open asked = *std::exchange(open_, {});
+  superseded_by_map_ = false;
   latency_s_ =
       std::clamp(double(now_ns - asked.asked_ns) * 1e-9, 0.9 * latency_s_, config_.replan_lead_s);
   const PlanRequest& request = asked.request;

@@ -89,6 +89,15 @@ void Harness::answer(double duration_s) {
   take();
 }
 
+void Harness::answer_up_to(const Vec3& end, double beyond_m, double duration_s) {
+  PlanRequest request = plans.back();
+  request.goal.position = end;
+  navigator.on_report(request.id, StageRole::path_search, ok(), now);
+  navigator.on_report(request.id, StageRole::corridor_builder, ok(), now, {.beyond_m = beyond_m});
+  navigator.on_trajectory(solve(request, duration_s), ++answers, now);
+  take();
+}
+
 void Harness::fails(ErrorCode code, StageRole stage, const std::string& message) {
   navigator.on_report(plans.back().id, stage, {code, message}, now);
   take();

@@ -42,6 +42,9 @@ class Harness {
   Commitment solve(const PlanRequest& request, double duration_s = 4.0);
   /// All stages answer the newest request.
   void answer(double duration_s = 4.0);
+  /// All stages answer the newest request with a plan for the first part of a longer path.
+  /// @param beyond_m what the corridor builder says that the path goes on for
+  void answer_up_to(const Vec3& end, double beyond_m, double duration_s);
   /// A stage says that the newest request has failed.
   void fails(ErrorCode code, StageRole stage = StageRole::trajectory_optimizer,
              const std::string& message = "");

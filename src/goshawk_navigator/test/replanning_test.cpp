@@ -207,6 +207,87 @@ TEST(Replanning, APlanThatTurnsOutBlockedIsReplacedByAnyOther) {
   EXPECT_TRUE(h.commits[1].stop());
 }
 
+TEST(Replanning, AnObstacleFoundOnTheWayMovesTheStopSoonerAndAPlanIsAskedForAtOnce) {
+  Harness h = approaching();
+  h.pass(1.0);
+  const auto id = h.plans.back().id;
+  VoxelGrid grid = seen_below(7, 7);
+  for (int y = 98; y <= 102; ++y) {
+    for (int z = 98; z <= 103; ++z) grid.grown.set({104, y, z}, true);  // before the stop
+  }
+  h.map(std::move(grid));
+  ASSERT_EQ(h.commits.size(), 2u);
+  const CommittedTrajectory &before = h.commits[0], &after = h.commits[1];
+  ASSERT_TRUE(after.stop());
+  EXPECT_LT(rest_x(after), 4.0 + 1e-6);
+  EXPECT_GT(after.stop()->after_s, 1.2) << "not at once";
+  EXPECT_LT(largest_difference(after.flown().sample(1.2), before.flown().sample(1.2)), 1e-9);
+  EXPECT_EQ(h.last().state, State::flying);
+  h.pass(0.1);
+  EXPECT_GT(h.plans.back().id, id);
+  EXPECT_TRUE(h.plans.back().start_time_ns) << "in flight";
+}
+
+TEST(Replanning, ANewMapSupersedesThePlanThatIsAwaitedButNotTwiceInARow) {
+  Harness h = approaching();
+  await_request(h);
+  const PlanRequest before = h.plans.back();
+  h.map(seen_below(7, 7));
+  const PlanRequest asked = h.plans.back();
+  EXPECT_EQ(asked.supersedes, before.id) << "at once";
+  h.map(seen_below(7, 8));
+  EXPECT_EQ(h.plans.back().id, asked.id) << "it is waited for";
+  h.fails(ErrorCode::no_path, StageRole::path_search);
+  h.pass(0.2);
+  h.map(seen_below(7, 9));
+  EXPECT_EQ(h.plans.back().stamp_ns, h.now);
+}
+
+/// Commits a plan whose path goes on for 8 m beyond its end.
+Harness within_its_horizon() {
+  Harness h;
+  h.map(seen_below(50, 6));
+  h.map_version = 6;
+  h.goal(kFar);
+  h.answer_up_to(Vec3(4, 0, 1), 8.0, 5.0);
+  return h;
+}
+
+TEST(Replanning, APlanThatEndsAtItsHorizonIsPlannedOnBeforeItBrakes) {
+  Harness h = within_its_horizon();
+  ASSERT_EQ(h.commits.size(), 1u);
+  EXPECT_FALSE(h.commits[0].stop());
+  h.pass(0.5);
+  ASSERT_GE(h.plans.size(), 2u);
+  EXPECT_EQ(h.plans.back().goal.position, kFar) << "the request is for the goal itself";
+  ASSERT_TRUE(h.plans.back().start_time_ns);
+  h.answer(4.4);
+  ASSERT_EQ(h.commits.size(), 2u);
+  h.pass(6.0);
+  EXPECT_EQ(h.last().state, State::arrived);
+  EXPECT_LT((h.vehicle().position - kFar).norm(), 1e-6);
+}
+
+TEST(Replanning, IfNoPlanFollowsTheVehicleRestsAtItsHorizonAndHasNotArrived) {
+  Harness h = within_its_horizon();
+  h.pass(7.0);
+  EXPECT_LT((h.vehicle().position - Vec3(4, 0, 1)).norm(), 1e-6);
+  EXPECT_NE(h.last().state, State::arrived);
+  EXPECT_FALSE(h.plans.back().start_time_ns) << "from rest";
+  EXPECT_EQ(h.plans.back().goal.position, kFar);
+}
+
+TEST(Replanning, APlanThatEndsBeforeTheGoalWithoutSayingSoIsRefused) {
+  Harness h;
+  h.map(seen_below(50, 6));
+  h.map_version = 6;
+  h.goal(kFar);
+  h.answer_up_to(Vec3(4, 0, 1), 7.0, 5.0);  // it is 8 m to the goal
+  EXPECT_TRUE(h.commits.empty());
+  ASSERT_EQ(h.complaints.size(), 1u);
+  EXPECT_THAT(h.complaints[0].reason.message, HasSubstr("from the goal"));
+}
+
 TEST(Replanning, AnAnswerThatComesTooLateOrFailsChangesNothing) {
   Harness h = approaching();
   h.pass(1.0);

@@ -1,4 +1,4 @@
-// Any map, any configuration, any points: a code and a sentence, or a path that is what it says.
+// Any map, any configuration, any points: a code and a sentence, or a path that keeps its promises.
 #include <cmath>
 #include <cstring>
 #include <limits>

@@ -174,7 +174,7 @@ bool Autopilot::flies_attitude() const {
   return given && external_attitude_ && nav_state_ == external_.mode();
 }
 
-// The last setpoint for ever, if one came since the mode is active; else it stops.
+// The last setpoint, however old, if one came since the mode is active; else it stops.
 TrajectorySetpoint Autopilot::wanted_setpoint() {
   const bool follows = nav_state_ == nav_state::kOffboard || nav_state_ == external_.mode();
   const bool given = trajectory_ns_ && *trajectory_ns_ >= activated_ns_ && is_valid(trajectory_);

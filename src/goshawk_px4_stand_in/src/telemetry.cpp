@@ -6,7 +6,7 @@
 #include "goshawk/px4_wire/codec.hpp"
 #include "goshawk/px4_wire/frames.hpp"
 
-// What it says, and how often.
+// What it publishes, and how often.
 
 namespace goshawk::px4_stand_in {
 

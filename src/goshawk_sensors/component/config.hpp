@@ -68,6 +68,8 @@ struct Config {
   SensorParameters sensor;
   std::string world_file = "";
   int world_seed = 1;
+  std::string movers_file = "";
+  double movers_start_s = 0.0;
   Boundary boundary = Boundary::open;
   std::string frame = "sensor";
   CloudFrame cloud_frame = CloudFrame::sensor;
@@ -75,6 +77,7 @@ struct Config {
   Missing missing = Missing::automatic;
   ImageEncoding image_encoding = ImageEncoding::float_m;
   bool camera_cloud = true;
+  bool covered = false;
 };
 
 template <typename Self, typename Visitor>
@@ -85,6 +88,11 @@ void describe(Self& c, Visitor&& visit) {
         "map of the true world (.bt, .ot, .pcd, .ply, .3dmap); empty: the default made world",
         Anything{});
   visit("world_seed", c.world_seed, "", "seed of the default made world", Range{0.0, 2147483647.0});
+  visit("movers_file", c.movers_file, "",
+        "what moves in the true world (docs/movers.md); empty: nothing", Anything{});
+  visit("movers_start_s", c.movers_start_s, "s",
+        "stamp at which the movers' time is 0; the same for all that read the file",
+        Range{0.0, 1e10});
   visit(
       "boundary", c.boundary, "",
       "what lies around the world: open (nothing), floor (at its lower face) or box (floor, walls "
@@ -109,6 +117,8 @@ void describe(Self& c, Visitor&& visit) {
         "depth camera: 32FC1 (metres) or 16UC1 (millimetres)", Anything{});
   visit("camera_cloud", c.camera_cloud, "", "depth camera: also publish the points as a cloud",
         Anything{});
+  visit("covered", c.covered, "", "something covers the lens: no ray returns",
+        AtRunTime{Anything{}});
 }
 
 }  // namespace goshawk::sensors

@@ -1,11 +1,15 @@
 #include <fmt/format.h>
 
+#include <cmath>
 #include <deque>
 #include <optional>
 
 #include "goshawk/conversions/vehicle.hpp"
 #include "goshawk/map_server/map_file.hpp"
+#include "goshawk/movers/movers_file.hpp"
 #include "goshawk/runtime/component.hpp"
+#include "goshawk/sensors/joined_world.hpp"
+#include "goshawk/sensors/moving_world.hpp"
 #include "goshawk/sensors/voxel_world.hpp"
 #include "goshawk/stage/stage_reporter.hpp"
 #include "goshawk/worlds/world.hpp"
@@ -25,19 +29,28 @@ constexpr double kLookAgain_s = 2.0;
 constexpr double kLongestGap_s = 0.5;
 constexpr double kKept_s = 2.0;
 
-Result<std::unique_ptr<VoxelWorld>> read_world(const Config& config) {
+Result<std::shared_ptr<VoxelWorld>> read_voxels(const Config& config) {
   if (config.world_file.empty()) {
     auto spec = worlds::default_world();
     spec.seed = std::uint64_t(config.world_seed);
     const auto made = worlds::make_world(spec);
     if (!made) return made.error();
-    return std::make_unique<VoxelWorld>(made->geometry, made->occupied, config.boundary);
+    return std::make_shared<VoxelWorld>(made->geometry, made->occupied, config.boundary);
   }
   const auto source = map_server::load_map(config.world_file);
   if (!source) return source.error();
   const auto voxels = map_server::voxelize(*source);
   if (!voxels) return voxels.error();
-  return std::make_unique<VoxelWorld>(voxels->geometry, voxels->occupied, config.boundary);
+  return std::make_shared<VoxelWorld>(voxels->geometry, voxels->occupied, config.boundary);
+}
+
+/// What moves is read once, at the start: a file that is wrong ends it.
+std::shared_ptr<const World> read_moving(const Config& config) {
+  if (config.movers_file.empty()) return nullptr;
+  auto movers = movers::read_movers(config.movers_file);
+  if (!movers) throw StartupFault(movers.error());
+  return std::make_shared<MovingWorld>(*std::move(movers),
+                                       std::llround(1e9 * config.movers_start_s));
 }
 
 Sensor make_sensor(const Config& config) {
@@ -60,9 +73,10 @@ class SensorsComponent : public Component {
  public:
   explicit SensorsComponent(Node& node)
       : node_(node),
-        config_(node.parameters<Config>()),
+        config_(node.parameters<Config>([this](const Config& c) { return reconfigure(c); })),
         sensor_(make_sensor(config_)),
         form_(CloudForm::of(config_)),
+        moving_(read_moving(config_)),
         track_(kLongestGap_s, kKept_s + 1.0 / config_.sensor.pattern.rate_hz),
         reporter_(node, StageRole::other, std::string(to_word(config_.sensor.pattern.pattern))),
         transforms_(node.advertise<tf2_msgs::msg::TFMessage>("/tf_static", Qos::latched())) {
@@ -76,7 +90,8 @@ class SensorsComponent : public Component {
     }
     node.subscribe<nav_msgs::msg::Odometry>(
         "odom", Qos::best_effort(10),
-        [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) { on_odometry(m); });
+        [this](const nav_msgs::msg::Odometry& m, const MessageInfo&) { on_odometry(m); },
+        Writers::one("odom"));
     node.every(kLookAgain_s, [this] {
       if (!world_) look_for_world();
     });
@@ -91,14 +106,21 @@ class SensorsComponent : public Component {
     std::optional<Image> image;
   };
 
+  Status reconfigure(const Config& config) {
+    if (auto status = check_change(config_, config); !status) return status;
+    config_ = config;
+    return success();
+  }
+
   void look_for_world() {
-    auto world = read_world(config_);
-    if (!world) {
-      return reporter_.fault(
-          fail(world.code(), world.error().message + "; nothing is measured until it can be read"));
+    const auto voxels = read_voxels(config_);
+    if (!voxels) {
+      return reporter_.fault(fail(
+          voxels.code(), voxels.error().message + "; nothing is measured until it can be read"));
     }
-    world_ = *std::move(world);
-    const GridGeometry& g = world_->geometry();
+    world_ = *voxels;
+    if (moving_) world_ = std::make_shared<JoinedWorld>(std::vector{world_, moving_});
+    const GridGeometry& g = (*voxels)->geometry();
     reporter_.ready(
         fmt::format("{} rays a scan, {:g} scans a second, in a world of {} voxels of "
                     "{:.3g} m",
@@ -123,7 +145,12 @@ class SensorsComponent : public Component {
     }
   }
 
-  void take(const Scan& scan) {
+  void take(const Scan& seen) {
+    if (config_.covered) {
+      dark_ = seen;
+      for (Return& r : dark_.returns) r = {.offset_ns = r.offset_ns, .ring = r.ring};
+    }
+    const Scan& scan = config_.covered ? dark_ : seen;
     Waiting& waiting = waiting_.emplace_back();
     waiting.due_ns = scan.end_ns + std::llround(1e9 * config_.sensor.latency_s);
     if (image_) fill_msg(scan, config_, waiting.image.emplace());
@@ -144,14 +171,16 @@ class SensorsComponent : public Component {
   Config config_;
   Sensor sensor_;
   CloudForm form_;
+  std::shared_ptr<const World> moving_;
   PoseTrack track_;  // longer than a scan
   stage::StageReporter reporter_;
   Publisher<tf2_msgs::msg::TFMessage> transforms_;
   std::optional<Publisher<PointCloud2>> cloud_;
   std::optional<Publisher<Image>> image_;
   std::optional<Publisher<CameraInfo>> info_;
-  std::unique_ptr<VoxelWorld> world_;
+  std::shared_ptr<const World> world_;
   std::deque<Waiting> waiting_;
+  Scan dark_;  // of a covered lens
 };
 
 }  // namespace

@@ -100,7 +100,7 @@ Result<int> Sensor::gather(const PoseTrack& track) {
     const std::size_t i = std::size_t(count);
     firings_[i] = firing;
     const double range_m = parameters_.returns.range_max_m / along(firing);
-    rays_map_[i] = {origin_map_, map_from_sensor_ * firing.direction_sensor, range_m};
+    rays_map_[i] = {origin_map_, map_from_sensor_ * firing.direction_sensor, range_m, time_ns};
     if (!body_.visible()) continue;
     rays_base_[i] = {mount_.position_map, mount_.q_map_base * firing.direction_sensor, range_m};
   }

@@ -67,6 +67,9 @@ class Impostor {
         {"command", &Impostor::commands},
         {"fallback_stop", &Impostor::fallback_stops},
         {"report", &Impostor::reports},
+        {"cloud_of_wall", &Impostor::walls},
+        {"cloud_of_nothing", &Impostor::nothings},
+        {"cloud_of_garbage", &Impostor::garbage},
     };
     return all;
   }
@@ -211,6 +214,27 @@ class Impostor {
     });
   }
 
+  /// As another lidar of launch file live. @param lie cloud of an eye at a place and time
+  void send_clouds(std::function<sensor_msgs::msg::PointCloud2(const Vec3&, std::int64_t)> lie) {
+    clouds_ = node_.advertise<sensor_msgs::msg::PointCloud2>("points", Qos::best_effort(2));
+    node_.subscribe<nav_msgs::msg::Odometry>("odom", Qos::best_effort(),
+                                             [this](const auto& m, const MessageInfo&) {
+                                               if (auto state = conversions::from_msg(m))
+                                                 at_map_ = state->position_map;
+                                               stamp_ns_ = conversions::to_ns(m.header().stamp());
+                                             });
+    node_.every(1.0 / options_.rate, [this, lie = std::move(lie)] {
+      if (at_map_) send(clouds_, lie(*at_map_, stamp_ns_));
+    });
+  }
+  void walls() {
+    send_clouds([this](const Vec3& eye, std::int64_t stamp_ns) {
+      return cloud_of_wall(eye, options_.to_map, stamp_ns);
+    });
+  }
+  void nothings() { send_clouds(&cloud_of_nothing); }
+  void garbage() { send_clouds(&cloud_of_garbage); }
+
   static constexpr std::uint64_t kOwn = std::uint64_t{1} << 60;
 
   Node& node_;
@@ -218,6 +242,7 @@ class Impostor {
   long sent_ = 0;
   std::optional<Vec3> at_map_;
   std::optional<runtime::Participant> vehicle_;
+  std::int64_t stamp_ns_ = 0;  // of the newest odometry
   Vec3 drift_map_ = Vec3::Zero();
   std::optional<msg::VoxelGrid> false_map_;
   runtime::Publisher<msg::CommittedTrajectory> commits_;
@@ -230,6 +255,7 @@ class Impostor {
   runtime::Publisher<msg::AttitudeSetpoint> commands_;
   runtime::Publisher<msg::FallbackStop> fallback_stops_;
   runtime::Publisher<msg::StageReport> reports_;
+  runtime::Publisher<sensor_msgs::msg::PointCloud2> clouds_;
 };
 
 bool read_numbers(std::string_view text, double* out, int count) {

@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <limits>
+#include <numbers>
+#include <vector>
 
 #include "goshawk/conversions/plan.hpp"
 #include "goshawk/conversions/vehicle.hpp"
@@ -33,6 +37,30 @@ msg::VoxelGrid filled(msg::VoxelGrid grid, std::uint64_t grown) {
   grid.known().clear();
   grid.version(grid.version() + 1'000'000);
   return grid;
+}
+
+sensor_msgs::msg::PointCloud2 cloud(const std::vector<Vec3>& points, std::int64_t stamp_ns) {
+  constexpr std::uint8_t kFloat32 = 7;
+  sensor_msgs::msg::PointCloud2 m;
+  m.header(conversions::make_header(stamp_ns));
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    sensor_msgs::msg::PointField field;
+    field.name(std::string(1, "xyz"[k]));
+    field.offset(k * sizeof(float));
+    field.datatype(kFloat32);
+    field.count(1);
+    m.fields().push_back(field);
+  }
+  m.height(1);
+  m.width(std::uint32_t(points.size()));
+  m.point_step(3 * sizeof(float));
+  m.row_step(m.width() * m.point_step());
+  m.data().resize(m.row_step());
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const Eigen::Vector3f point = points[k].cast<float>();
+    std::memcpy(m.data().data() + k * m.point_step(), point.data(), m.point_step());
+  }
+  return m;
 }
 
 }  // namespace
@@ -147,6 +175,43 @@ msg::FallbackStop stop_elsewhere(const Vec3& from, const Vec3& to, std::int64_t 
   conversions::fill_msg(
       FallbackStop{.step_s = 1.0, .states = {{.position = from}, {.position = to}}}, m);
   return m;
+}
+
+sensor_msgs::msg::PointCloud2 cloud_of_wall(const Vec3& eye, const Vec3& to,
+                                            std::int64_t stamp_ns) {
+  const Vec3 ahead = (to - eye).stableNormalized();
+  const Vec3 aside = Vec3::UnitZ().cross(ahead).stableNormalized();
+  std::vector<Vec3> points;
+  constexpr int kHalf = 30;
+  constexpr double kStep_m = 0.05;
+  for (int i = -kHalf; i <= kHalf; ++i) {
+    for (int j = -kHalf; j <= kHalf; ++j) {
+      points.push_back(eye + ahead + kStep_m * (i * aside + j * Vec3::UnitZ()));
+    }
+  }
+  return cloud(points, stamp_ns);
+}
+
+sensor_msgs::msg::PointCloud2 cloud_of_nothing(const Vec3& eye, std::int64_t stamp_ns) {
+  constexpr int kPoints = 20'000;
+  constexpr double kRange_m = 7.5;
+  const double golden = std::numbers::pi * (3.0 - std::sqrt(5.0));
+  std::vector<Vec3> points;
+  for (int k = 0; k < kPoints; ++k) {  // a Fibonacci sphere
+    const double z = 1.0 - 2.0 * (k + 0.5) / kPoints, r = std::sqrt(1.0 - z * z);
+    points.push_back(eye + kRange_m * Vec3(r * std::cos(golden * k), r * std::sin(golden * k), z));
+  }
+  return cloud(points, stamp_ns);
+}
+
+sensor_msgs::msg::PointCloud2 cloud_of_garbage(const Vec3& eye, std::int64_t stamp_ns) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  std::vector<Vec3> points;
+  for (const double x : {kNan, kInfinite, -kInfinite, 1e30, -1e30, 1e9, 3e38}) {
+    points.insert(points.end(), {{x, x, x}, eye + Vec3(x, 0, 0), {eye.x(), x, eye.z()}});
+  }
+  return cloud(points, stamp_ns);
 }
 
 }  // namespace goshawk::hostile

@@ -3,6 +3,7 @@
 #include "goshawk/core/vehicle.hpp"
 #include "goshawk_msgs.h"
 #include "nav_msgs.h"
+#include "sensor_msgs.h"
 
 /// Messages that are well formed, and false.
 namespace goshawk::hostile {
@@ -39,5 +40,13 @@ goshawk_msgs::msg::AttitudeSetpoint full_tilt(std::int64_t now_ns);
 /// A fallback stop from rest at `from` to rest at `to`, in a second, through whatever is between.
 goshawk_msgs::msg::FallbackStop stop_elsewhere(const Vec3& from, const Vec3& to,
                                                std::int64_t now_ns);
+
+/// Clouds in frame `map`, as a lidar at `eye` would send them.
+/// A wall 1 m before the eye, towards `to`.
+sensor_msgs::msg::PointCloud2 cloud_of_wall(const Vec3& eye, const Vec3& to, std::int64_t stamp_ns);
+/// Returns from 7.5 m all around: every ray says that what it crosses is free.
+sensor_msgs::msg::PointCloud2 cloud_of_nothing(const Vec3& eye, std::int64_t stamp_ns);
+/// Points that are no numbers, or are farther away than any world.
+sensor_msgs::msg::PointCloud2 cloud_of_garbage(const Vec3& eye, std::int64_t stamp_ns);
 
 }  // namespace goshawk::hostile

@@ -6,7 +6,7 @@ import json
 import signal
 
 import harness
-from harness import PREFIX, node_of, note, until
+from harness import GOSHAWK, PREFIX, SystemTest, node_of, note, until
 from stack import PLACES, StackTest, position_of
 
 # lie: options, and a stage that must refuse it
@@ -78,6 +78,34 @@ class HostileParticipant(StackTest):
 
     def test_4_nothing_was_touched(self):
         self.check_untouched([position_of(m) for m in self.truth.lines()])
+
+
+class HostileClouds(SystemTest):
+    """Live flights, beside a stranger whose clouds would paint walls or erase the true ones."""
+
+    def fly(self, lie):
+        """@return the summary of the flight, and what the stages said in it"""
+        reports = self.sandbox.start(GOSHAWK, "topic", "echo", "stage_report", "--json",
+                                     "--timeout", "240")
+        flight = self.sandbox.start(GOSHAWK, "fly", "--live", "--json", "--no-record", "--output",
+                                    self.sandbox.folder / lie)
+        ready = until(lambda: {"lidar", "map_server"} <= {node_of(r) for r in reports.lines()}, 60.0)
+        self.assertTrue(ready, str(flight.outcome()))
+        impostor = self.sandbox.start(PREFIX / "bin" / "goshawk_impostor", lie, "--to", "3,8,2",
+                                      "--rate", 10)
+        status = flight.wait(120.0)
+        self.assertEqual(impostor.stop(signal.SIGTERM)[0], 0, str(impostor.outcome()))
+        self.assertGreater(impostor.lines()[-1]["sent"], 0)
+        self.assertEqual(status, 0, str(flight.outcome()))
+        return self.json_object(flight.outcome()), reports.lines()
+
+    def test_clouds_of_a_stranger_are_refused_and_the_goal_is_reached(self):
+        for lie in ("cloud_of_nothing", "cloud_of_wall", "cloud_of_garbage"):
+            with self.subTest(lie):
+                flight, reports = self.fly(lie)
+                self.assertEqual((flight["code"], flight["verdict"]), ("ok", "safe"))
+                self.assertTrue([r for r in reports if r["code"] == "second_writer"
+                                 and node_of(r) == "map_server"], "the liar is not named")
 
 
 if __name__ == "__main__":

@@ -7,6 +7,7 @@ import csv
 
 import harness
 import second_opinion
+import viewer_pages
 from harness import GOSHAWK, SystemTest, note
 
 WALL_M = 8.0  # the world is so long, from the start to the goal
@@ -44,8 +45,22 @@ class LiveFlight(SystemTest):
         self.assertGreater(clearance, harness.BODY_RADIUS_M)
         self.assertGreater(abs(track[-1][1] - track[0][1]), 0.9 * WALL_M)
         self.assertGreater(len(with_stop), 1, "the world did not unfold")
-        for name in ("top.png", "side.png", "flight.html", "flight.mcap"):
+        for name in ("top.png", "side.png", "growth.png", "flight.html", "flight.mcap"):
             self.assertTrue((folder / name).is_file(), name)
+        self.assertIsNone(flight["why"], "of a flight that arrived")
+        self.page_plays_the_growth(folder)
+
+    def page_plays_the_growth(self, folder):
+        """The page's map begins with nothing; it ends with walls where the world has some."""
+        page = viewer_pages.page_data(folder / "flight.html")
+        growth = page["growth"]
+        seen = [len(viewer_pages.voxels_after(growth, k)[0]) for k in (1, len(growth["moments"]))]
+        note(f"{len(growth['moments'])} moments, {seen[0]} to {seen[1]} known voxels")
+        self.assertLess(seen[0], 0.5 * seen[1])
+        times = [m["t"] for m in growth["moments"]]
+        self.assertEqual(times, sorted(times))
+        self.assertEqual(page["stops"][1:], [[3.0, 8.0, 2.0]], "goals are goals, not commits' ends")
+        self.assertTrue(any(leg["stop_after"] > 0 and leg["nominal"] for leg in page["legs"]))
 
     def test_a_launch_file_without_a_lidar_is_refused(self):
         outcome = self.sandbox.goshawk("fly", "--live", "--launch", "flight", timeout_s=120.0)

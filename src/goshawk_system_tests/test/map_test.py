@@ -49,6 +49,19 @@ class LiveMap(MapCase):
         self.assertTrue(server.alive())
         self.check_bad_clouds(server, reports)
 
+    def test_after_its_last_change_the_whole_map_is_said_again(self):
+        """To whom DDS does not repeat it: who was deaf for longer than its lease."""
+        self.run_server("use_box:=true", "resolution_m:=0.2", "sensor_timeout_s:=0.0")
+        whole, updates = self.echo("map/voxels", "--no-arr"), self.echo("map/voxels/updates")
+        self.send_odometry((5.1, 5.1, 2.1))
+        self.send_cloud(cloud([(8.1, 5.1, 2.1)]), lambda: first_with(updates.lines()))
+
+        def said():
+            """How often the newest version has come."""
+            newest = updates.lines()[-1]["to_version"]
+            return sum(m["version"] == newest for m in whole.lines())
+        self.assertTrue(until(lambda: said() >= 4, 20.0), f"{said()}: {whole.outcome()}")
+
     def late_version(self):
         outcome = self.sandbox.goshawk("topic", "echo", "map/voxels", "--once", "--json",
                                        "--no-arr", "--timeout", "60", timeout_s=30)

@@ -13,6 +13,7 @@ import harness
 from harness import GOSHAWK, PREFIX, SOURCE, SystemTest, note, until
 from map_case import MapCase, cloud, odometry
 from stack import StackTest
+from viewer_pages import page_data
 
 SCRIPTS = SOURCE / "src/goshawk_viewer/test"
 
@@ -46,14 +47,6 @@ def look(test, script, *arguments):
                                 env=browser_environment(test))
     test.assertEqual(outcome.status, 0, str(outcome))
     note(outcome.out.strip().replace("\n", "\n    "))
-
-
-def page_data(page):
-    """What a page draws, from the page."""
-    text = page.read_text(encoding="utf-8")
-    mark = '<script type="application/json" id="flight">'
-    begin = text.index(mark) + len(mark)
-    return json.loads(text[begin:text.index("</script>", begin)])
 
 
 class FlightPage(SystemTest):
@@ -146,17 +139,34 @@ class FlightPage(SystemTest):
         self.assertIn(f"port {port} cannot be used", outcome.err)
 
 
+def place(x, y, z):
+    return {"x": x, "y": y, "z": z}
+
+
+WHOLE = {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}
+MOVERS = {"header": {"frame_id": "map"}, "boxes": [
+    {"id": 7, "kind": "person", "pose": {"position": place(4.0, 4.0, 0.9), "orientation": WHOLE},
+     "half_extents": place(0.3, 0.3, 0.9)}]}
+PREDICTIONS = {"header": {"frame_id": "map"}, "version": 1, "obstacles": [
+    {"id": 7, "kind": "person", "half_extents": place(0.3, 0.3, 0.9), "orientation": WHOLE,
+     "track": [{"duration": 2.0, "control_points": [place(4.0, 4.0, 0.9), place(6.0, 4.0, 0.9)]}],
+     "error": 0.1, "error_rate": 0.2, "valid_until": 2.0, "top_speed": 2.0}]}
+
+
 class LiveMapView(MapCase):
     def test_a_map_that_scans_change_is_drawn_anew(self):
         environment = browser_environment(self)
         self.run_server("use_box:=true", "unknown:=occupied", "resolution_m:=0.2", "radius_m:=0.0",
                         "margin_m:=0.0", "box_x_max_m:=10.0", "box_y_max_m:=10.0",
-                        "box_z_max_m:=4.0")
+                        "box_z_max_m:=4.0", "publish_raw:=true")
         for topic, kind, message in [
                 ("odom", "nav_msgs/msg/Odometry", odometry((5.1, 5.1, 2.1))),
-                ("cloud_in", "sensor_msgs/msg/PointCloud2", cloud([(8.1, 5.1, 2.1)]))]:
+                ("cloud_in", "sensor_msgs/msg/PointCloud2", cloud([(8.1, 5.1, 2.1)])),
+                ("points", "sensor_msgs/msg/PointCloud2", cloud([(8.1, 5.1, 2.1)])),
+                ("movers", "goshawk_msgs/msg/MovingBoxes", MOVERS),
+                ("obstacles", "goshawk_msgs/msg/PredictedObstacles", PREDICTIONS)]:
             self.sandbox.start(GOSHAWK, "topic", "pub", topic, kind, json.dumps(message), "-r", "5",
-                               "-n", "100000")
+                               "-n", "100000", "--timeout", "600")  # until the page reads it
         view = self.sandbox.start(GOSHAWK, "view", "--live", "--bridge",
                                   f"ws://127.0.0.1:{harness.free_port()}", "--port", "0", "--no-open",
                                   "--json", env=environment)

@@ -61,7 +61,7 @@ double Tracker::jump_m(const RigidBodyState& state, std::int64_t stamp_ns) const
 void Tracker::stop_after_jump(double jump_m, std::int64_t now_ns) {
   const Vec3 acceleration = reference_.at(stamp_ns_).acceleration;
   lose(fail(ErrorCode::tracking_lost,
-            "odometry jumped by " + number(jump_m) + " m; stopping where it says to be now"),
+            "odometry jumped by " + number(jump_m) + " m; stopping at the new position"),
        now_ns);
   reference_ = Reference::hold(state_.position_map);
   forget_errors();
@@ -104,7 +104,7 @@ Status Tracker::check_control(std::int64_t now_ns) const {
       return success();
     case Control::autopilot:
       return not_flown(
-          "its autopilot has control; either none has reached it yet, or it is in another mode");
+          "its autopilot has control: none has reached it yet, or it is in another mode");
     case Control::pilot:
       return not_flown("its pilot has control");
     case Control::nobody:

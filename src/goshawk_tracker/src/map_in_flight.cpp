@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "clock_time.hpp"
+#include "goshawk/core/stop_part.hpp"
 #include "goshawk/tracker/tracker.hpp"
 
 // What the tracker does when the map, or the second opinion, says no to what it flies.
@@ -24,16 +25,43 @@ void Tracker::check_flight(std::int64_t now_ns) {
   std::optional<std::int64_t> until_ns;
   for (std::size_t i = queue_.size(); i-- > 0;) {
     const std::int64_t from_ns = std::max(now_ns, queue_[i].start_ns());
-    if (const auto found = queue_[i].find_obstruction(map_.space(), from_ns, until_ns)) {
+    const bool is_last = i + 1 == queue_.size();
+    const auto found = queue_[i].find_obstruction(map_.space(), from_ns, until_ns);
+    if (found && !(is_last && stop_sooner(queue_[i], from_ns))) {
       drop_queued(i, fail(ErrorCode::trajectory_blocked, to_text(grid, *found)), newest);
       until_ns.reset();
     } else {
       until_ns = queue_[i].start_ns();
     }
   }
-  if (const auto found = reference_.find_obstruction(map_.space(), now_ns, until_ns)) {
+  const auto found = reference_.find_obstruction(map_.space(), now_ns, until_ns);
+  if (found && !(queue_.empty() && stop_sooner(reference_, now_ns))) {
     stop_before(*found, newest, now_ns);
   }
+}
+
+// What has a stop part leads on into the unknown, and is planned for again and again: it goes on as
+// far as the newest map allows, and a better plan may come meanwhile. Its stop part then begins
+// sooner, on the same nominal part. @return whether there is such a stop
+bool Tracker::stop_sooner(Reference& flown, std::int64_t from_ns) {
+  if (!flown.follows() || !flown.committed().stop()) return false;
+  const CommittedTrajectory& c = flown.committed();
+  const double from_s = std::max(0.0, flown.progress_s(from_ns));
+  if (from_s >= c.stop()->after_s) return false;
+  auto stop = latest_stop(c.nominal(), map_.space(), from_s);
+  if (!stop || !*stop) return false;
+  auto sooner = CommittedTrajectory::make({.id = c.id(),
+                                           .nominal = c.nominal(),
+                                           .stop = *std::move(stop),
+                                           .start_time_ns = c.start_time_ns(),
+                                           .map_version = map_.grid()->version,
+                                           .yaw_rad = c.yaw_rad(),
+                                           .yaw_curve = c.yaw_curve()});
+  if (!sooner) return false;
+  const std::int64_t start_ns = flown.start_ns();
+  flown =
+      Reference::follow(std::make_shared<const CommittedTrajectory>(*std::move(sooner)), start_ns);
+  return true;
 }
 
 // With those behind it, which begin on it. The one before it goes on, and ends at rest.

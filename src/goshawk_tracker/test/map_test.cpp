@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "goshawk/core/stop_part.hpp"
 #include "goshawk/tracker/tracker.hpp"
 #include "trajectories.hpp"
 
@@ -170,6 +171,53 @@ TEST(MapInFlight, BeforeANewObstacleTheVehicleBrakesAtOnceAsGentlyAsItMay) {
     EXPECT_LT(flown.farthest_x_m, wall_m + 1e-9);
     EXPECT_LT(flown.hardest_m_s2, wall_m >= 5.6 ? 3.5 : 8.0);
   }
+}
+
+/// The hall, seen up to there, with a wall.
+std::shared_ptr<const VoxelGrid> seen_hall_with_wall(std::uint64_t version, double seen_m,
+                                                     double wall_m) {
+  auto grid = std::make_shared<VoxelGrid>(*seen_hall(version, seen_m));
+  grid->grown = hall(version, wall_m)->grown;
+  return grid;
+}
+
+/// Eight metres that lead into the unseen, with the stop part that map 5 asks for.
+CommittedTrajectory into_the_unseen() {
+  const CommittedTrajectory whole = eight_metres(17);
+  auto stop = latest_stop(whole.nominal(), FreeSpace(seen_hall(5, 8.0)), 0.0).value();
+  EXPECT_TRUE(stop);
+  return CommittedTrajectory::make(
+             {.id = 17, .nominal = whole.nominal(), .stop = *std::move(stop), .map_version = 5})
+      .value();
+}
+
+TEST(MapInFlight, WhatHasAStopPartGoesOnAsFarAsANewObstacleAllowsAndNothingIsLost) {
+  Flown flown;
+  flown.tracker.set_map(seen_hall(5, 8.0), 0);
+  ASSERT_TRUE(flown.tracker.accept(into_the_unseen(), 0));
+  flown.until(2.0);
+  flown.tracker.set_map(seen_hall_with_wall(6, 8.0, 6.0), flown.now_ns());
+  EXPECT_EQ(flown.tracker.status().fault.code, ErrorCode::ok);
+  EXPECT_EQ(flown.tracker.status().mode, Mode::follow);
+  flown.until(3.0);
+  const FlatState planned = into_the_unseen().nominal().trajectory().sample(flown.time_s - 0.01);
+  EXPECT_LT(largest_difference(flown.tracker.status().reference, planned), 1e-9) << "at full speed";
+  flown.until(9.0);
+  EXPECT_EQ(flown.tracker.status().mode, Mode::hold);
+  EXPECT_EQ(flown.tracker.status().lost_trajectory_id, 0U);
+  EXPECT_LT(flown.farthest_x_m, 6.0 + 1e-9);
+  EXPECT_GT(flown.farthest_x_m, 5.5);
+}
+
+TEST(MapInFlight, IfNoSoonerStopFitsItIsBrakedForAtOnce) {
+  Flown flown;
+  flown.tracker.set_map(seen_hall(5, 8.0), 0);
+  ASSERT_TRUE(flown.tracker.accept(into_the_unseen(), 0));
+  flown.until(3.74);
+  flown.tracker.set_map(seen_hall_with_wall(6, 8.0, 4.8), flown.now_ns());
+  EXPECT_EQ(flown.tracker.status().lost_trajectory_id, 17U);
+  flown.until(9.0);
+  EXPECT_LT(flown.farthest_x_m, 4.8 + 1e-9);
 }
 
 // Too near for any stop that its limits allow: it still brakes, and says so.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 #include <sstream>
 #include <thread>
@@ -13,6 +14,9 @@
 #include "goshawk/runtime/component.hpp"
 #include "goshawk/stage/stage_reporter.hpp"
 #include "goshawk/viewer_bridge/server.hpp"
+#include "goshawk/why/why.hpp"
+#include "goshawk/why_messages/snapshot_collector.hpp"
+#include "std_msgs.h"
 
 namespace goshawk::viewer_bridge {
 
@@ -48,6 +52,7 @@ using namespace goshawk::stage;
 
 constexpr double kLookAround_s = 0.5;
 constexpr double kServe_s = 0.01;
+constexpr double kExplain_s = 0.5;
 constexpr std::size_t kKept = 20;              // newest messages of a latched topic, ...
 constexpr std::size_t kKeptBytes = 1U << 20U;  // ... or one, if they are larger
 
@@ -92,9 +97,11 @@ class ViewerBridgeComponent : public Component {
         server_(start_server(config_)),
         context_(join()),
         dds_(*context_, "viewer_bridge_reader"),
+        why_(node.advertise<std_msgs::msg::String>("why", Qos::reliable_last())),
         reporter_(node, StageRole::viewer, "foxglove.websocket.v1") {
     dds_.every(kLookAround_s, [this] { look_around(); });
     dds_.every(kServe_s, [this] { serve(); });
+    node_.every(kExplain_s, [this] { explain(); });
     thread_ = std::thread([this] { dds_.spin(); });
     reporter_.ready(fmt::format("listens on ws://{}:{}", config_.address, server_->port()));
   }
@@ -117,6 +124,25 @@ class ViewerBridgeComponent : public Component {
     auto context = Context::create(*options);
     if (!context) throw StartupFault(context.error());
     return *std::move(context);
+  }
+
+  // What binds the vehicle, in the words of `goshawk why`: only as long as somebody reads it, for
+  // it needs the map. The silence of stages shows once they were listened for.
+  void explain() {
+    if (why_.matched() == 0) return;
+    if (!collector_) {
+      collector_.emplace();
+      collector_->listen(node_, "");
+      listening_since_ns_ = node_.monotonic_ns();
+    }
+    if (double(node_.monotonic_ns() - listening_since_ns_) < 1.2e9 * why::kSilent_s) return;
+    const why::Reason reason = why::explain(collector_->snapshot(node_.now_ns()));
+    std_msgs::msg::String sentences;
+    for (const std::string& sentence : {reason.doing, reason.because, reason.mend}) {
+      if (sentence.empty()) continue;
+      sentences.data() += sentences.data().empty() ? sentence : " " + sentence;
+    }
+    if (auto sent = why_.publish(sentences); !sent) node_.log().warn("{}", sent.error().message);
   }
 
   // New topics become channels. What is gone stays: a stage that is restarted writes on.
@@ -257,12 +283,15 @@ class ViewerBridgeComponent : public Component {
   Config config_;
   std::unique_ptr<Server> server_;
   std::unique_ptr<Context> context_;
+  std::optional<why::SnapshotCollector> collector_;  // in the node's own thread
+  std::int64_t listening_since_ns_ = 0;
   // From here on used by the thread alone.
   std::vector<std::unique_ptr<MessageType>> types_;
   std::map<std::uint32_t, Topic> topics_;
   std::set<std::string> known_;
   std::uint32_t next_channel_ = 1;
   Node dds_;
+  Publisher<std_msgs::msg::String> why_;
   std::map<std::pair<std::string, std::string_view>, RawPublisher> publishers_;
   StageReporter reporter_;
   std::thread thread_;

@@ -5,7 +5,13 @@ Goshawk.FlightPage = class extends Goshawk.Page {
     super();
     this.data = data;
     this.legs = data.legs.map(leg => ({
-      ...leg, trajectory: leg.pieces.length ? new Goshawk.Trajectory(leg.pieces) : null}));
+      ...leg, trajectory: leg.pieces.length ? new Goshawk.Trajectory(leg.pieces) : null,
+      stopAfter: leg.stop_after || 0,
+      nominal: leg.nominal && leg.nominal.length ? new Goshawk.Trajectory(leg.nominal) : null}));
+    this.followed = Goshawk.followedLegs(this.legs);
+    // Of plans that newer ones replaced in flight, only what was followed is drawn, and the newest at each time.
+    this.kept = this.legs.filter(leg => !leg.trajectory || this.followed.some(f => f.leg === leg && f.whole));
+    this.changes = new Goshawk.MapChanges();
     const f = data.flown;
     this.track = f.t.map((t, k) => ({t, p: f.p.slice(3 * k, 3 * k + 3), v: f.v.slice(3 * k, 3 * k + 3),
                                      q: f.q.slice(4 * k, 4 * k + 4)}));
@@ -24,7 +30,7 @@ Goshawk.FlightPage = class extends Goshawk.Page {
 
   framed() {
     const points = [...this.track.map(s => s.p), ...this.data.stops];
-    for (const leg of this.legs) points.push(...leg.waypoints, ...leg.raw);
+    for (const leg of this.kept) points.push(...leg.waypoints, ...leg.raw);
     return points;
   }
 
@@ -35,9 +41,10 @@ Goshawk.FlightPage = class extends Goshawk.Page {
     view.makeVehicle();
     if (data.obstacles) view.maps.obstacles = Goshawk.Voxels.fromRuns(data.obstacles);
     if (data.grown) view.maps.grown = Goshawk.Voxels.fromRuns(data.grown);
-    view.setLegs(this.legs);
+    if (data.growth) this.fillGrowth();
+    view.setLegs(this.kept, this.followed);
     view.setFlown(this.track);
-    const map = view.maps.obstacles || view.maps.grown;
+    const map = view.solid();
     if (map) {
       this.setCutRange(map.origin[2], map.upper(2), Goshawk.bestCut(map, this.framed()));
     } else {
@@ -46,12 +53,35 @@ Goshawk.FlightPage = class extends Goshawk.Page {
     view.drawMaps();
     view.setGoals(data.stops);
     view.frame(this.framed());
-    for (const [name, have] of [['grown', data.grown], ['flown', this.track.length],
-                                ['vehicle', this.track.length || this.legs.length]]) {
-      if (have) continue;
-      $('layer-' + name).parentElement.hidden = true;
-      view.layers[name].visible = false;
-    }
+    const refused = this.fillRefused();
+    const moved = data.movers.length + data.predictions.length > 0;
+    const parted = this.legs.some(leg => leg.stopAfter > 0);
+    this.showLayers({grown: data.grown, flown: this.track.length, vehicle: this.track.length || this.legs.length,
+                     unseen: data.growth, changed: data.growth, cloud: false, window: data.growth, movers: moved,
+                     nominal: parted, stop: parted, refused});
+  }
+
+  // The map as the vehicle had it at each time; the true world stays as a shadow of it.
+  fillGrowth() {
+    const {view} = this;
+    this.growth = new Goshawk.Growth(this.data.growth);
+    this.growth.seek(Infinity, this.changes);
+    view.maps.world = view.maps.obstacles;
+    $('layer-above').parentElement.lastChild.textContent = 'the true world';
+    $('layer-above').parentElement.hidden = !view.maps.world;
+    Object.assign(view.maps, {obstacles: this.growth.obstacles, known: this.growth.known});
+    this.changes.clear();
+  }
+
+  // @return whether something was refused
+  fillRefused() {
+    const {summary, obstacles, growth} = this.data;
+    const leg = summary && (summary.legs || []).find(l => !l.arrived);
+    if (!leg) return false;
+    const voxel = summary.why && summary.why.voxel, map = growth || obstacles || this.data.grown;
+    this.view.parts.setRefused({voxel: voxel && map ? {center: voxel.center, size: map.resolution} : null,
+                                goal: leg.goal, path: leg.path ? leg.path.points : []});
+    return true;
   }
 
   fillPanel() {
@@ -79,7 +109,11 @@ Goshawk.FlightPage = class extends Goshawk.Page {
       $('badge').hidden = false;
       $('badge').textContent = summary.verdict;
       $('badge').className = summary.verdict === 'safe' ? '' : 'bad';
-      if (summary.code !== 'ok') $('sentence').textContent = `${summary.code}: ${summary.message}`;
+      const {why} = summary;
+      if (summary.code !== 'ok') {
+        $('sentence').textContent = why ? `${summary.code}: ${why.because} ${why.mend}` :
+            `${summary.code}: ${summary.message}`;
+      }
     }
     this.setFacts(facts);
   }
@@ -202,6 +236,27 @@ Goshawk.FlightPage = class extends Goshawk.Page {
     $('time-text').textContent = `${(this.now - this.begin).toFixed(2)} / ${(this.end - this.begin).toFixed(2)} s`;
     const pose = this.poseAt(this.now);
     if (this.view && pose) this.view.setVehicle(pose.p, pose.q);
+    if (this.view) this.showMoment();
     this.plotsOld = true;
+  }
+
+  // What the picture shows of this moment alone: the map, the newest commit, what moves.
+  showMoment() {
+    const {view, data} = this;
+    if (this.growth && this.growth.seek(this.now, this.changes)) {
+      view.mapLayers.refresh(this.changes.dirty);
+      view.parts.setChanges(this.growth.known, this.changes.places);
+      view.parts.setWindow(this.growth.window());
+      this.changes.clear();
+    }
+    const leg = Goshawk.legAt(this.legs, this.now) || null;
+    if (leg !== this.shown) {
+      this.shown = leg;
+      view.setLegs(leg && !this.kept.includes(leg) ? [...this.kept, leg] : this.kept, this.followed);
+      view.parts.setCommit(leg);
+    }
+    if (!data.movers.length && !data.predictions.length) return;
+    const at = list => (list.findLast(m => m.t <= this.now && m.t > this.now - 2) || {boxes: []}).boxes;
+    view.parts.setMovers(at(data.movers), at(data.predictions));
   }
 };

@@ -1,7 +1,8 @@
 // A client of the Foxglove WebSocket protocol, version 1.
 'use strict';
 Goshawk.FoxgloveClient = class {
-  // topics: {"odom": message => ...} by the end of the topic's name; onState(text): of the connection
+  // topics: {"odom": ["nav_msgs/msg/Odometry", message => ...]} by the end of the topic's name and its type;
+  // onState(text): of the connection
   constructor(url, topics, onState) {
     Object.assign(this, {url, topics, onState});
     this.connect();
@@ -9,6 +10,7 @@ Goshawk.FoxgloveClient = class {
 
   connect() {
     this.channels = new Map();
+    this.unread = this.unread || new Set();  // topics that are not subscribed to for now
     this.subscriptions = new Map();
     this.socket = new WebSocket(this.url, ['foxglove.websocket.v1']);
     this.socket.binaryType = 'arraybuffer';
@@ -35,12 +37,25 @@ Goshawk.FoxgloveClient = class {
     if (message.op !== 'advertise') return;
     for (const channel of message.channels) {
       const name = Object.keys(this.topics).find(
-          t => channel.topic === t || channel.topic.endsWith('/' + t));
+          t => (channel.topic === t || channel.topic.endsWith('/' + t)) && channel.schemaName === this.topics[t][0]);
       if (!name || [...this.channels.values()].includes(name)) continue;
       this.channels.set(channel.id, name);
-      this.subscriptions.set(channel.id, {take: this.topics[name], schema: new Goshawk.Schema(channel.schema)});
-      this.say({op: 'subscribe', subscriptions: [{id: channel.id, channelId: channel.id}]});
+      this.subscriptions.set(channel.id, {take: this.topics[name][1], schema: new Goshawk.Schema(channel.schema)});
+      if (!this.unread.has(name)) this.ask('subscribe', channel.id);
     }
+  }
+
+  ask(op, id) {
+    if (op === 'subscribe') this.say({op, subscriptions: [{id, channelId: id}]});
+    else this.say({op, subscriptionIds: [id]});
+  }
+
+  // Reads a topic from now on, or no longer.
+  read(name, on) {
+    if (on !== this.unread.has(name)) return;
+    if (on) this.unread.delete(name);
+    else this.unread.add(name);
+    for (const [id, of] of this.channels) if (of === name) this.ask(on ? 'subscribe' : 'unsubscribe', id);
   }
 
   onBinary(view) {

@@ -2,6 +2,24 @@
 'use strict';
 const Goshawk = {};
 
+// The occupied runs [begin, end) of alternating lengths of free and occupied ones: LEB128, base64.
+Goshawk.runsOf = text => {
+  const bytes = Uint8Array.from(atob(text), c => c.charCodeAt(0)), runs = [];
+  let at = 0, value = 0, k = 0;
+  while (k < bytes.length) {
+    let length = 0, scale = 1, byte;
+    do {
+      byte = bytes[k++];
+      length += (byte & 127) * scale;
+      scale *= 128;
+    } while (byte & 128);
+    if (value && length) runs.push([at, at + length]);
+    at += length;
+    value ^= 1;
+  }
+  return runs;
+};
+
 // A set of voxels: x fastest, one byte each. Outside of the grid counts as free here: only what
 // can be seen is drawn.
 Goshawk.Voxels = class {
@@ -12,22 +30,9 @@ Goshawk.Voxels = class {
     this.cells = new Uint8Array(size[0] * size[1] * size[2]);
   }
 
-  // Alternating lengths of free and occupied runs, LEB128, base64.
   static fromRuns(map) {
     const voxels = new Goshawk.Voxels(map.origin, map.resolution, map.size);
-    const bytes = Uint8Array.from(atob(map.runs), c => c.charCodeAt(0));
-    let at = 0, value = 0, k = 0;
-    while (k < bytes.length) {
-      let length = 0, scale = 1, byte;
-      do {
-        byte = bytes[k++];
-        length += (byte & 127) * scale;
-        scale *= 128;
-      } while (byte & 128);
-      if (value) voxels.cells.fill(1, at, at + length);
-      at += length;
-      value ^= 1;
-    }
+    for (const [begin, end] of Goshawk.runsOf(map.runs)) voxels.cells.fill(1, begin, end);
     return voxels;
   }
 
@@ -50,13 +55,17 @@ Goshawk.Voxels = class {
   }
 
   // The new content of 64 x 8 x 8 voxels, as goshawk_msgs/VoxelBrick has it: a word a row.
-  setBrick(brick) {
+  // @param words of the brick; changed(x, y, z, value): told of each voxel that changes
+  setBrick(brick, words = brick.grown, changed = () => {}) {
     const first = [64 * brick.word_x, 8 * brick.brick_y, 8 * brick.brick_z];
     const last = first.map((c, i) => Math.min(this.size[i], c + (i ? 8 : 64)));
     for (let z = first[2]; z < last[2]; ++z) for (let y = first[1]; y < last[1]; ++y) {
       const word = 8 * (8 * (z & 7) + (y & 7)), row = this.size[0] * (y + this.size[1] * z);
       for (let x = first[0]; x < last[0]; ++x) {
-        this.cells[row + x] = (brick.grown[word + ((x & 63) >> 3)] >> (x & 7)) & 1;
+        const value = (words[word + ((x & 63) >> 3)] >> (x & 7)) & 1;
+        if (this.cells[row + x] === value) continue;
+        this.cells[row + x] = value;
+        changed(x, y, z, value);
       }
     }
   }
@@ -87,14 +96,16 @@ Goshawk.Voxels = class {
 
 // Every face between an occupied voxel and a free one, of the layers [z0, z1), as if nothing were
 // outside them. ao: how open each corner of the face is, 0 (in a nook) to 3.
-Goshawk.voxelFaces = function(voxels, z0, z1) {
+// @param box [[x, y, z], [x, y, z]) of the voxels whose faces are wanted; default: all
+Goshawk.voxelFaces = function(voxels, z0, z1, box = [[0, 0, 0], voxels.size]) {
   const [nx, ny, nz] = voxels.size;
   const cells = voxels.cells;
   const solid = (x, y, z) => x >= 0 && y >= 0 && z >= z0 && x < nx && y < ny && z < z1 &&
       cells[x + nx * (y + ny * z)] === 1;
   const cell = [], face = [], ao = [];
   const unit = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
-  for (let z = z0; z < z1; ++z) for (let y = 0; y < ny; ++y) for (let x = 0; x < nx; ++x) {
+  const [lower, upper] = box, first = Math.max(z0, lower[2]), last = Math.min(z1, upper[2]);
+  for (let z = first; z < last; ++z) for (let y = lower[1]; y < upper[1]; ++y) for (let x = lower[0]; x < upper[0]; ++x) {
     if (!cells[x + nx * (y + ny * z)]) continue;
     for (let k = 0; k < 6; ++k) {
       const axis = k >> 1, step = k & 1 ? -1 : 1, n = unit[axis];
@@ -190,15 +201,21 @@ Goshawk.Trajectory = class {
 // Stamps of the same moment differ by microseconds from message to message.
 Goshawk.legAt = (legs, t) => legs.findLast(l => l.trajectory && l.start <= t);
 
-// Seconds of the plans, each until a newer one took over.
-Goshawk.plannedTime = legs => {
-  let next = Infinity, time = 0;
-  for (const l of legs.filter(l => l.trajectory).reverse()) {
-    time += Math.max(0, Math.min(l.trajectory.duration, next - l.start));
-    next = Math.min(next, l.start);
+// What was followed of each leg: {leg, until [s] since its start, whole: no newer leg replaced it}; legs that
+// were replaced at once are left out.
+Goshawk.followedLegs = legs => {
+  let next = Infinity;
+  const parts = [];
+  for (const leg of legs.filter(l => l.trajectory).reverse()) {
+    const most = next - leg.start, whole = most >= leg.trajectory.duration;
+    next = Math.min(next, leg.start);
+    if (most > 0) parts.unshift({leg, until: Math.min(most, leg.trajectory.duration), whole});
   }
-  return time;
+  return parts;
 };
+
+// Seconds of the plans, each until a newer one took over.
+Goshawk.plannedTime = legs => Goshawk.followedLegs(legs).reduce((sum, part) => sum + part.until, 0);
 
 // The first t seconds of a piece, as a piece of its own.
 Goshawk.headOf = (piece, t) => {
@@ -211,11 +228,14 @@ Goshawk.headOf = (piece, t) => {
   return {duration: t, points: left};
 };
 
+// Of pieces as messages have them.
+Goshawk.readPieces = pieces => new Goshawk.Trajectory(Array.from(
+    pieces, p => ({duration: p.duration, points: p.control_points.map(c => [c.x, c.y, c.z])})));
+
 // What is flown of a CommittedTrajectory when nothing newer comes: the nominal part up to
 // stop_after, then the stop part, which begins there; without a stop part all of the nominal part.
 Goshawk.flown = commit => {
-  const read = pieces => pieces.map(
-      p => ({duration: p.duration, points: p.control_points.map(c => [c.x, c.y, c.z])}));
+  const read = pieces => Goshawk.readPieces(pieces).pieces;
   const nominal = read(commit.nominal.pieces);
   if (!(commit.stop_after > 0)) return new Goshawk.Trajectory(nominal);
   const pieces = [];

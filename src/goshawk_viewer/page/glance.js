@@ -39,8 +39,29 @@ Goshawk.wayLeft = (trajectory, t) => {
   return {length, time: left + Math.max(0, -t)};
 };
 
+// When what is flown parts from the nominal part, and where it rests.
+Goshawk.stopText = (leg, now) => {
+  const t = now - leg.start, left = leg.trajectory.duration - t;
+  if (left <= 0) return 'flown: at rest';
+  const rests = `rests in ${left.toFixed(1)} s`;
+  return t < leg.stopAfter ? `in ${(leg.stopAfter - t).toFixed(1)} s, ${rests}` : `is flown, ${rests}`;
+};
+
+// [m] the least distance from what is left of a commit, stop part included, to an obstacle: looked for at places
+// 0.1 s apart; Infinity if nothing is within reach. @param leg as the live page has it
+Goshawk.narrowest = (voxels, leg, now, reach) => {
+  const {duration} = leg.trajectory, from = Math.min(Math.max(now - leg.start, 0), duration);
+  const steps = Math.max(1, Math.min(60, Math.ceil((duration - from) / 0.1)));
+  let least = Infinity;
+  for (let k = 0; k <= steps; ++k) {
+    const {position} = leg.trajectory.sample(from + (duration - from) * k / steps);
+    least = Math.min(least, Goshawk.nearestObstacle(voxels, position, Math.min(reach, least)));
+  }
+  return least;
+};
+
 // Rows of names and values. @param s pose {p}, speed [m/s], mode, leg and now as the live page has them,
-// obstacle [m] or null, mapAge [s] or null, battery 0 to 1 or null
+// obstacle and narrowest [m] or null, mapAge [s] or null, battery 0 to 1 or null
 Goshawk.glance = s => {
   const rows = [['mode', s.mode || 'no navigator']];
   if (!s.pose) return rows;
@@ -53,6 +74,10 @@ Goshawk.glance = s => {
   if (s.obstacle !== null) {
     rows.push(['nearest obstacle', s.obstacle === Infinity ? 'over 3 m' : s.obstacle.toFixed(2) + ' m']);
   }
+  if (s.narrowest !== null && s.narrowest !== undefined) {
+    rows.push(['narrowest ahead', s.narrowest === Infinity ? 'over 1 m' : s.narrowest.toFixed(2) + ' m']);
+  }
+  if (s.leg && s.leg.stopAfter > 0) rows.push(['stop part', Goshawk.stopText(s.leg, s.now)]);
   if (s.mapAge !== null) rows.push(['map', `${Math.max(0, s.mapAge).toFixed(1)} s old`]);
   if (s.battery !== null) rows.push(['battery', `${Math.round(100 * s.battery)} %`]);
   return rows;

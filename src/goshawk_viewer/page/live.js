@@ -21,7 +21,8 @@ Goshawk.LivePage = class extends Goshawk.Page {
         `ws://${location.hostname || 'localhost'}:8765`;
     document.title = 'Goshawk live';
     $('title').textContent = 'Live';
-    $('live').hidden = false;
+    $('live').hidden = $('send').hidden = false;
+    $('save-csv').title = 'the flown track of the last minutes: t, x, y, z, vx, vy, vz';
     $('timeline').hidden = true;
     this.track = [];
     this.paths = new Map();
@@ -31,15 +32,40 @@ Goshawk.LivePage = class extends Goshawk.Page {
     this.state = {link: 'connecting', mode: '', text: ''};
     this.bindGoal();
     this.bindCommands();
-    this.client = new Goshawk.FoxgloveClient(this.url, {
-      'map/voxels': m => this.onGrown(m), 'map/voxels/updates': m => this.onUpdate(m),
-      octomap_binary: m => this.onMap(m),
-      path: m => this.onPath(m), committed_trajectory: m => this.onTrajectory(m),
-      odom: m => this.onOdometry(m), navigator_state: m => this.onNavigator(m),
-      stage_report: m => this.onReport(m), vehicle_status: m => { this.battery = m.battery; },
-      mission_state: m => { this.mission = m; }, operator_answer: m => this.onAnswer(m),
-    }, text => this.setLink(text));
+    this.changes = new Goshawk.MapChanges();
+    this.moving = {movers: [], predictions: []};
+    if (this.view) this.showLayers({refused: false, unseen: false, changed: false, window: false, cloud: false,
+                                    movers: false, nominal: false, stop: false});
+    this.client = new Goshawk.FoxgloveClient(this.url, this.topics(), text => this.setLink(text));
     this.tell();
+  }
+
+  topics() {
+    const of = {
+      'map/voxels': ['VoxelGrid', m => this.onGrown(m)], 'map/voxels/updates': ['VoxelGridUpdate', m => this.onUpdate(m)],
+      path: ['Path', m => this.onPath(m)], committed_trajectory: ['CommittedTrajectory', m => this.onTrajectory(m)],
+      navigator_state: ['NavigatorState', m => this.onNavigator(m)], stage_report: ['StageReport', m => this.onReport(m)],
+      vehicle_status: ['VehicleStatus', m => { this.battery = m.battery; }],
+      mission_state: ['MissionState', m => { this.mission = m; }], operator_answer: ['OperatorAnswer', m => this.onAnswer(m)],
+      movers: ['MovingBoxes', m => this.onMovers(m)], obstacles: ['PredictedObstacles', m => this.onPredictions(m)]};
+    const ours = Object.entries(of).map(([name, [type, take]]) => [name, ['goshawk_msgs/msg/' + type, take]]);
+    return {...Object.fromEntries(ours), octomap_binary: ['octomap_msgs/msg/Octomap', m => this.onMap(m)],
+            odom: ['nav_msgs/msg/Odometry', m => this.onOdometry(m)],
+            points: ['sensor_msgs/msg/PointCloud2', m => this.onCloud(m)],
+            why: ['std_msgs/msg/String', m => { $('why').textContent = m.data; }]};
+  }
+
+  // What nobody looks at is not sent.
+  onLayer(name, shown) {
+    if (name === 'cloud') this.client.read('points', shown);
+  }
+
+  // A layer that has content from now on.
+  found(name) {
+    const label = $('layer-' + name).parentElement;
+    if (!label.hidden) return;
+    label.hidden = false;
+    this.view.layers[name].visible = $('layer-' + name).checked;
   }
 
   framed() {
@@ -70,8 +96,9 @@ Goshawk.LivePage = class extends Goshawk.Page {
     return `Waiting for a bridge at ${this.url}.\nStart one with: tools/goshawk launch flight_view`;
   }
 
+  // A map without raw voxels comes as an OctoMap as well.
   onMap(m) {
-    if (!this.view) return;
+    if (!this.view || this.view.maps.known) return;
     const voxels = Goshawk.octomapVoxels(m.data, m.resolution);
     if (voxels) this.showMap('obstacles', voxels);
   }
@@ -79,23 +106,64 @@ Goshawk.LivePage = class extends Goshawk.Page {
   onGrown(m) {
     this.mapStamp = seconds(m.header.stamp);
     if (!this.view) return;
-    const voxels = Goshawk.Voxels.fromWords(
-        xyz(m.origin), m.resolution, [m.size_x, m.size_y, m.size_z], m.grown);
-    voxels.version = m.version;
-    voxels.unknown = m.unknown_is_occupied ? 1 : 0;
-    this.showMap('grown', voxels);
+    const old = this.view.maps.grown;
+    if (old && old.version === m.version) return;  // the same again, for who comes late
+    const read = words => Goshawk.Voxels.fromWords(xyz(m.origin), m.resolution, [m.size_x, m.size_y, m.size_z], words);
+    const grown = read(m.grown);
+    grown.version = m.version;
+    grown.unknown = m.unknown_is_occupied ? 1 : 0;
+    if (m.raw.length && m.known.length) {
+      this.view.maps.known = read(m.known);
+      this.showMap('obstacles', read(m.raw));
+      for (const name of ['unseen', 'changed', 'window']) this.found(name);
+    }
+    this.showMap('grown', grown);
+    if (this.view.maps.known) this.view.parts.setWindow(grown);
   }
 
   // Bricks that changed. An update that does not follow is dropped: the whole map comes soon after.
   onUpdate(m) {
     this.mapStamp = seconds(m.header.stamp);
-    const grown = this.view && this.view.maps.grown;
+    const {grown, known, obstacles} = this.view ? this.view.maps : {};
     if (!grown || grown.version !== m.from_version) return;
-    grown.moveWindow([m.shift_word_x, m.shift_brick_y, m.shift_brick_z], grown.unknown);
-    for (const brick of m.bricks) grown.setBrick(brick);
+    const shift = [m.shift_word_x, m.shift_brick_y, m.shift_brick_z], seen = known && known.size.join() === grown.size.join();
+    grown.moveWindow(shift, grown.unknown);
+    if (seen) for (const voxels of [known, obstacles]) voxels.moveWindow(shift, 0);
+    if (shift.some(c => c)) this.mapOld = true;  // all of it
+    const changed = kind => (x, y, z, value) => this.changes.add(x, y, z, kind(value));
+    for (const brick of m.bricks) {
+      grown.setBrick(brick, brick.grown, (x, y, z) => this.changes.spread(x, y, z));
+      if (!seen) continue;
+      known.setBrick(brick, brick.known, changed(() => 'learnt'));
+      obstacles.setBrick(brick, brick.raw, changed(value => (value ? 'blocked' : 'freed')));
+    }
     grown.version = m.to_version;
     this.mapUpdates = (this.mapUpdates || 0) + 1;
-    this.mapOld = true;
+  }
+
+  // In the frame map, or in the vehicle's: others are not drawn.
+  onCloud(m) {
+    if (!this.view || !this.pose) return;
+    const cloud = Goshawk.cloudPlaces(m, m.header.frame_id === 'base_link' ? this.pose : null);
+    if (!cloud || (m.header.frame_id !== 'map' && m.header.frame_id !== 'base_link')) return;
+    this.found('cloud');
+    this.cloud = cloud;
+  }
+
+  onMovers(m) {
+    this.moving.movers = m.boxes.map(Goshawk.movingBox);
+    this.showMovers();
+  }
+
+  onPredictions(m) {
+    this.moving.predictions = m.obstacles.map(Goshawk.predictedBox).filter(b => b.track.length);
+    this.showMovers();
+  }
+
+  showMovers() {
+    if (!this.view) return;
+    this.found('movers');
+    this.view.parts.setMovers(this.moving.movers, this.moving.predictions);
   }
 
   showMap(kind, voxels) {
@@ -128,7 +196,8 @@ Goshawk.LivePage = class extends Goshawk.Page {
     this.leg = {
       raw: path ? path.raw.map(xyz) : [], waypoints: path ? path.waypoints.map(xyz) : [],
       corridor: [...t.polytopes, ...m.stop_polytopes].map(p => ({A: p.normals, b: p.offsets})),
-      trajectory: Goshawk.flown(m), start: seconds(m.start_time)};
+      trajectory: Goshawk.flown(m), start: seconds(m.start_time), stopAfter: m.stop_after,
+      nominal: m.stop_after > 0 ? Goshawk.readPieces(t.pieces) : null};
     const {v_max, a_max} = t.request.limits;
     this.plots[0].limit = v_max;
     this.plots[1].limit = a_max;
@@ -138,6 +207,8 @@ Goshawk.LivePage = class extends Goshawk.Page {
     if (!this.view) return;
     this.view.speedScale = v_max;
     this.view.setLegs([this.leg]);
+    if (this.leg.nominal) for (const name of ['nominal', 'stop']) this.found(name);
+    this.view.parts.setCommit(this.leg);
     this.view.setGoals([xyz(t.request.start.position), xyz(t.request.goal.position)]);
   }
 
@@ -183,6 +254,7 @@ Goshawk.LivePage = class extends Goshawk.Page {
     const rows = Goshawk.glance({
       mode: this.missionText() || this.state.mode, pose: this.pose, speed: this.speed, leg: this.leg, now: this.now,
       obstacle: obstacles ? Goshawk.nearestObstacle(obstacles, this.pose.p, kNear) : null,
+      narrowest: obstacles && this.leg ? Goshawk.narrowest(obstacles, this.leg, this.now, 1) : null,
       mapAge: this.mapStamp === undefined ? null : this.now - this.mapStamp,
       battery: this.battery >= 0 ? this.battery : null});
     $('glance').replaceChildren(...rows.flatMap(([name, value]) => {
@@ -241,12 +313,21 @@ Goshawk.LivePage = class extends Goshawk.Page {
     });
   }
 
-  // Maps may change ten times a second: drawing them takes at most a fifth of the time.
+  // Maps and clouds may come ten times a second: drawing them takes at most a fifth of the time.
   redrawMap(time) {
-    if (!this.mapOld || time < (this.nextMap || 0)) return;
+    if (!(this.mapOld || this.changes.dirty.size || this.cloud) || time < (this.nextMap || 0)) return;
+    const begin = performance.now(), {view, changes} = this;
+    if (this.mapOld) {
+      view.drawMaps();
+      if (view.maps.known) view.parts.setWindow(view.maps.grown);
+    } else if (changes.dirty.size) {
+      view.mapLayers.refresh(changes.dirty);
+    }
+    if (changes.dirty.size && view.maps.known) view.parts.setChanges(view.maps.known, changes.places);
+    changes.clear();
+    if (this.cloud) view.parts.setCloud(this.cloud);
+    this.cloud = null;
     this.mapOld = false;
-    const begin = performance.now();
-    this.view.drawMaps();
     this.nextMap = time + Math.max(0.2, 5e-3 * (performance.now() - begin));
   }
 

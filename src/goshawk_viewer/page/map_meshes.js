@@ -38,11 +38,10 @@ void main() {
   gl_FragColor = vec4(color, opacity);
 }`;
 
-// The faces of the layers [z0, z1) of voxels.
-// @param style {low, high: colours by height up to top [m]; opacity, haze: [begin, end] [m], sky, ink}
-// @return a mesh, or null where nothing is occupied
-Goshawk.voxelMesh = function(voxels, z0, z1, style) {
-  const faces = Goshawk.voxelFaces(voxels, z0, z1);
+// Faces of voxels.
+// @param faces of Goshawk.voxelFaces; style {low, high: colours by height up to top [m]; opacity, haze: [begin, end] [m], sky, ink}
+// @return a mesh, or null if there are none
+Goshawk.faceMesh = function(faces, voxels, style) {
   if (!faces.face.length) return null;
   const geometry = new G3.InstancedBufferGeometry();
   geometry.setAttribute('position', new G3.Float32BufferAttribute(

@@ -4,10 +4,14 @@ const $ = id => document.getElementById(id);
 
 Goshawk.layerNames = [
   ['obstacles', 'obstacles', t => t.high], ['above', 'above the cut', t => t.ghost, 'hollow'],
-  ['grown', 'too close for the vehicle', t => t.grown], ['raw', 'voxel path', t => t.raw, 'thin'],
+  ['grown', 'too close to fly', t => t.grown], ['unseen', 'edge of the unseen', t => t.unseen],
+  ['changed', 'changed just now', () => 0xff731a], ['cloud', 'cloud', t => t.cloud],
+  ['window', 'window of the map', t => t.ghost, 'hollow'], ['raw', 'voxel path', t => t.raw, 'thin'],
   ['pruned', 'pruned path', t => t.pruned, 'thin'], ['corridor', 'corridor', t => t.corridor],
-  ['trajectory', 'trajectory, by speed', null], ['flown', 'flown track', t => t.flown, 'thin'],
-  ['vehicle', 'vehicle', t => t.accent], ['goals', 'start and goals', t => t.goal, 'halves']];
+  ['trajectory', 'plan, by speed', null], ['nominal', 'nominal part', t => t.nominal, 'thin'],
+  ['stop', 'stop part', t => t.stop, 'thin'], ['flown', 'flown track', t => t.flown, 'thin'],
+  ['movers', 'moving obstacles', t => t.mover], ['vehicle', 'vehicle', t => t.accent], ['goals', 'start and goals', t => t.goal, 'halves'],
+  ['refused', 'what was refused', t => t.accent]];
 
 Goshawk.Page = class {
   constructor() {
@@ -33,7 +37,8 @@ Goshawk.Page = class {
     }
     $('no-webgl').hidden = false;
     $('view').hidden = true;
-    for (const id of ['cut-row', 'follow', 'home', 'layers', 'speed-scale', 'height-row', 'goal']) {
+    for (const id of ['cut-row', 'follow', 'home', 'layers', 'speed-scale', 'height-row', 'goal', 'measure', 'compass',
+                      'save-png']) {
       $(id).hidden = true;
     }
     return null;
@@ -48,7 +53,8 @@ Goshawk.Page = class {
       box.checked = !this.view || this.view.layers[name].visible;
       box.addEventListener('change', () => {
         this.view.layers[name].visible = box.checked;
-        if (['obstacles', 'above', 'grown'].includes(name)) this.view.drawMaps();  // made when shown
+        if (Goshawk.MapLayers.names.includes(name)) this.view.drawMaps();  // made when shown
+        this.onLayer(name, box.checked);
         this.view.redraw = true;
       });
       const swatch = document.createElement('i');
@@ -60,6 +66,17 @@ Goshawk.Page = class {
         `rgb(${Goshawk.speedColor(s).map(c => Math.round(255 * c)).join(',')})`);
     this.gradient = `linear-gradient(90deg, ${stops.join(',')})`;
     $('speed-scale').querySelector('i').style.background = this.gradient;
+  }
+
+  // A layer was shown or hidden.
+  onLayer() {}
+
+  // Layers without content are not in the legend. @param have {name: whether there is something}
+  showLayers(have) {
+    for (const [name, there] of Object.entries(have)) {
+      $('layer-' + name).parentElement.hidden = !there;
+      if (!there) this.view.layers[name].visible = false;
+    }
   }
 
   bindButtons() {
@@ -76,12 +93,51 @@ Goshawk.Page = class {
       plots[(k + 1) % plots.length].className = 'shown';
       this.plotsOld = true;
     });
+    for (const kind of ['png', 'svg', 'csv']) $('save-' + kind).addEventListener('click', () => this.save(kind));
+    this.bindMeasure();
     let timer = 0;
     $('cut').addEventListener('input', () => {
       $('cut-text').textContent = Number($('cut').value).toFixed(1) + ' m';
       clearTimeout(timer);
       timer = setTimeout(() => this.view.setCut(Number($('cut').value)), 30);
     });
+  }
+
+  // Distances between two places that are clicked: of the map, or of the plane at the vehicle's height.
+  measure(on) {
+    this.measuring = on ? [] : null;
+    $('measure').setAttribute('aria-pressed', on);
+    document.body.classList.toggle('aiming', on);
+    $('measured').textContent = on ? 'Click the first place.' : '';
+    this.view.setMeasure([]);
+  }
+
+  bindMeasure() {
+    const canvas = $('view');
+    let down = null;
+    $('measure').addEventListener('click', () => this.measure(!this.measuring));
+    canvas.addEventListener('pointerdown', event => { down = [event.clientX, event.clientY]; });
+    canvas.addEventListener('pointerup', event => {
+      if (!this.measuring || !down || Math.hypot(event.clientX - down[0], event.clientY - down[1]) > 4) return;
+      const place = this.view.touch(event);
+      if (!place) return;
+      this.measuring = [...this.measuring.slice(this.measuring.length === 2 ? 2 : 0), place];
+      this.view.setMeasure(this.measuring);
+      $('measured').textContent = Goshawk.measureText(this.measuring);
+    });
+  }
+
+  // Into the browser's downloads.
+  save(kind) {
+    const text = {svg: () => Goshawk.plotsSvg(this.plots, this.style(), $('title').textContent),
+                  csv: () => Goshawk.trackCsv(this.track || [])};
+    const types = {svg: 'image/svg+xml', csv: 'text/csv'};
+    const link = document.createElement('a');
+    link.download = `${$('title').textContent.replace(/[^\w.-]+/g, '_')}.${kind}`;
+    link.href = kind === 'png' ? this.view.pictureUrl() :
+        URL.createObjectURL(new Blob([text[kind]()], {type: types[kind]}));
+    link.click();
+    if (kind !== 'png') setTimeout(() => URL.revokeObjectURL(link.href), 10000);
   }
 
   follow() {
@@ -108,6 +164,7 @@ Goshawk.Page = class {
     if (turns[key]) this.view.turn(...turns[key]);
     if (key === '0') this.view.frame(this.framed());
     if (key === 'f') this.follow();
+    if (key === 'm') this.measure(!this.measuring);
   }
 
   // @param at where the map is cut at first [m]
@@ -136,7 +193,7 @@ Goshawk.Page = class {
     const css = getComputedStyle(document.documentElement);
     const get = name => css.getPropertyValue('--' + name).trim();
     return {font: get('font'), text: get('text'), soft: get('soft'), line: get('line'), limit: get('limit'),
-            cursor: get('soft'), flown: get('flown'), plan: get('plan')};
+            cursor: get('soft'), back: get('back'), flown: get('flown'), plan: get('plan')};
   }
 
   setFacts(facts) {

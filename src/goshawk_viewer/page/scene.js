@@ -13,13 +13,16 @@ Goshawk.View = class {
     this.controls.dampingFactor = 0.12;
     this.controls.maxPolarAngle = 0.495 * Math.PI;
     this.layers = {};
-    for (const name of ['obstacles', 'above', 'grown', 'raw', 'pruned', 'corridor', 'trajectory',
-                        'flown', 'vehicle', 'goals', 'aim', 'ground']) {
+    for (const name of ['obstacles', 'above', 'grown', 'unseen', 'changed', 'cloud', 'window', 'raw', 'pruned',
+                        'corridor', 'trajectory', 'nominal', 'stop', 'flown', 'movers', 'vehicle', 'goals',
+                        'refused', 'measure', 'aim', 'ground']) {
       this.layers[name] = new G3.Group();
       this.scene.add(this.layers[name]);
     }
     this.layers.grown.visible = this.layers.raw.visible = false;
-    this.maps = {};
+    this.maps = {};  // obstacles, grown, known: as the vehicle's map has them; world: the true one
+    this.mapLayers = new Goshawk.MapLayers(this);
+    this.parts = new Goshawk.Parts(this);
     this.lineMaterials = new Set();
     this.cut = Infinity;
     this.speedScale = 2;
@@ -56,7 +59,8 @@ Goshawk.View = class {
   remake() {
     this.scene.background = new G3.Color(this.theme.sky);
     this.drawMaps();
-    if (this.legs) this.setLegs(this.legs);
+    if (this.legs) this.setLegs(this.legs, this.followed);
+    this.parts.remake();
     if (this.track) this.setFlown(this.track);
     if (this.goalPoints) this.setGoals(this.goalPoints);
     this.makeVehicle();
@@ -93,31 +97,10 @@ Goshawk.View = class {
   }
 
   drawMaps() {
-    const {obstacles, grown} = this.maps;
-    for (const name of ['obstacles', 'above', 'grown', 'ground']) this.clear(name);
-    const radius = this.bounds().getBoundingSphere(new G3.Sphere()).radius;
-    if (!this.haze) this.haze = [2.2 * radius, 6.5 * radius];
-    const t = this.theme;
-    const shown = name => this.layers[name].visible;
-    if (obstacles) {
-      const top = obstacles.layersBelow(this.cut);
-      if (shown('obstacles')) this.addVoxels('obstacles', obstacles, 0, top, t.low, t.high, 1);
-      if (shown('above')) this.addVoxels('above', obstacles, top, obstacles.size[2], t.ghost, t.ghost, 0.05);
-    }
-    if (grown && shown('grown')) {
-      const solid = obstacles ? 0.16 : 1;
-      const colors = obstacles ? [t.grown, t.grown] : [t.low, t.high];
-      this.addVoxels('grown', grown, 0, grown.layersBelow(this.cut), ...colors, solid);
-    }
-    this.addGround(radius);
+    this.mapLayers.draw();
+    this.clear('ground');
+    this.addGround(this.bounds().getBoundingSphere(new G3.Sphere()).radius);
     this.redraw = true;
-  }
-
-  addVoxels(layer, voxels, z0, z1, low, high, opacity) {
-    const {sky, ink} = this.theme;
-    const mesh = Goshawk.voxelMesh(voxels, z0, z1, {
-      low, high, opacity, sky, ink, haze: this.haze, top: this.cut + 0.5});
-    if (mesh) this.layers[layer].add(mesh);
   }
 
   addGround(radius) {
@@ -150,17 +133,19 @@ Goshawk.View = class {
     return line;
   }
 
-  // leg: {raw, waypoints, corridor: [{A, b}], trajectory: Goshawk.Trajectory or null}
-  setLegs(legs) {
+  // @param legs [{raw, waypoints, corridor: [{A, b}], trajectory: Goshawk.Trajectory or null}] that are drawn
+  // whole; followed [{leg, until}]: the trajectories that are drawn, up to a time [s] since their starts
+  setLegs(legs, followed = Goshawk.followedLegs(legs)) {
     this.legs = legs;
+    this.followed = followed;
     for (const name of ['raw', 'pruned', 'corridor', 'trajectory']) this.clear(name);
     for (const leg of legs) {
       this.line('raw', leg.raw || [], {color: this.theme.raw, width: 2});
       this.line('pruned', leg.waypoints || [], {color: this.theme.pruned, width: 2});
       (leg.waypoints || []).forEach(p => this.dot('pruned', p, 0.045, this.theme.pruned));
       (leg.corridor || []).forEach(p => this.addPolytope(p));
-      if (leg.trajectory) this.addTrajectory(leg.trajectory);
     }
+    for (const {leg, until} of followed) this.addTrajectory(leg.trajectory, until);
     this.redraw = true;
   }
 
@@ -193,11 +178,11 @@ Goshawk.View = class {
     this.layers.corridor.add(mesh, lines);
   }
 
-  addTrajectory(trajectory) {
-    const steps = Math.max(2, Math.ceil(trajectory.duration / 0.04));
+  addTrajectory(trajectory, until) {
+    const steps = Math.max(2, Math.ceil(until / 0.04));
     const points = [], colors = [];
     for (let k = 0; k <= steps; ++k) {
-      const s = trajectory.sample(trajectory.duration * k / steps);
+      const s = trajectory.sample(until * k / steps);
       points.push(s.position);
       colors.push(Goshawk.speedColor(V3.norm(s.velocity) / this.speedScale));
     }
@@ -303,7 +288,7 @@ Goshawk.View = class {
   }
 
   // The map that hides things, or nothing.
-  solid() { return this.maps.obstacles || this.maps.grown; }
+  solid() { return this.maps.world || this.maps.obstacles || this.maps.grown; }
 
   // The width [pixel] that the panel takes; 0 if it lies over a narrow picture.
   panelWidth() {
@@ -311,18 +296,24 @@ Goshawk.View = class {
     return window.innerWidth > 760 ? panel.getBoundingClientRect().right : 0;
   }
 
+  // The width [pixel] that the cards on the right take.
+  rightWidth() {
+    const live = document.getElementById('live');
+    return window.innerWidth > 760 && !live.hidden ? window.innerWidth - live.getBoundingClientRect().left : 0;
+  }
+
   // Centres the picture in the part that the panel leaves free.
   shiftFromPanel() {
     const w = this.canvas.clientWidth || 1, h = this.canvas.clientHeight || 1;
-    this.camera.setViewOffset(w, h, -this.panelWidth() / 2, 0, w, h);
+    this.camera.setViewOffset(w, h, (this.rightWidth() - this.panelWidth()) / 2, 0, w, h);
   }
 
   // The part of the picture for the flight, right of the panel or below it; -1 to 1.
   freePart() {
     const w = this.canvas.clientWidth || 1, h = this.canvas.clientHeight || 1;
-    const left = this.panelWidth(), above = left ? 0 : 50;
-    const side = Math.max(24, 0.13 * (w - left)), below = Math.max(24, 0.13 * h);
-    return {left: 2 * (left + side) / w - 1, right: 1 - 2 * side / w,
+    const left = this.panelWidth(), right = this.rightWidth(), above = left ? 0 : 50;
+    const side = Math.max(24, 0.13 * (w - left - right)), below = Math.max(24, 0.13 * h);
+    return {left: 2 * (left + side) / w - 1, right: 1 - 2 * (right + side) / w,
             bottom: 2 * below / h - 1, top: 1 - 2 * (below + above) / h};
   }
 
@@ -336,6 +327,36 @@ Goshawk.View = class {
     return hit && [hit.x, hit.y, hit.z];
   }
 
+  // @return the place of the map under the pointer: an obstacle's, or one at the vehicle's height; or nothing
+  touch(event) {
+    const r = this.canvas.getBoundingClientRect(), ray = new G3.Raycaster(), map = this.maps.obstacles || this.maps.grown;
+    ray.setFromCamera({x: 2 * (event.clientX - r.left) / r.width - 1, y: 1 - 2 * (event.clientY - r.top) / r.height},
+                      this.camera);
+    const {origin, direction} = ray.ray;
+    const hit = map && Goshawk.castRay(map, origin.toArray(), direction.toArray(), map.layersBelow(this.cut));
+    return hit || this.pick(event, this.body.position.z);
+  }
+
+  // Up to two places, and the line between them.
+  setMeasure(places) {
+    this.clear('measure');
+    places.forEach(p => this.dot('measure', p, 0.06, this.theme.accent));
+    this.line('measure', places, {color: this.theme.accent, width: 2.5, hidden: true, order: 6});
+    this.redraw = true;
+  }
+
+  // The compass turns with the picture.
+  turnCompass() {
+    const away = this.controls.target.clone().sub(this.camera.position);
+    const angle = Math.atan2(away.x, away.y) * 180 / Math.PI;  // of the view, from y to x
+    document.getElementById('rose').setAttribute('transform', `rotate(${(-angle).toFixed(1)})`);
+  }
+
+  pictureUrl() {
+    this.renderer.render(this.scene, this.camera);
+    return this.canvas.toDataURL('image/png');
+  }
+
   // @return where a point of the map is on the page [pixel]
   project(p) {
     const r = this.canvas.getBoundingClientRect();
@@ -347,6 +368,7 @@ Goshawk.View = class {
     this.controls.update();
     if (!this.redraw) return;
     this.redraw = false;
+    this.turnCompass();
     this.renderer.render(this.scene, this.camera);
   }
 

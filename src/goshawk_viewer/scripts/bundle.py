@@ -9,10 +9,12 @@ MESSAGES_OUTPUT is the script with which Foxglove Studio draws our messages.
 import pathlib
 import sys
 
-SCRIPTS = ["geometry.js", "theme.js", "map_meshes.js", "vehicle.js", "sight.js", "scene.js", "plots.js",
-           "panel.js", "flight.js", "cdr.js", "octomap.js", "foxglove.js", "glance.js", "live.js",
-           "start.js"]
-MESSAGES = ["geometry.js", "theme.js", "octomap.js", "sight.js"]
+SCRIPTS = ["geometry.js", "theme.js", "world.js", "map_meshes.js", "map_layers.js", "parts.js",
+           "vehicle.js", "sight.js", "scene.js", "plots.js", "panel.js", "flight.js", "cdr.js",
+           "octomap.js", "messages.js", "foxglove.js", "glance.js", "saved.js",
+           "live.js", "start.js"]
+MESSAGES = ["geometry.js", "theme.js", "world.js", "parts.js", "messages.js", "octomap.js",
+            "sight.js"]
 THREE = ["three.min.js", "examples/js/controls/OrbitControls.js",
          "examples/js/lines/LineSegmentsGeometry.js", "examples/js/lines/LineGeometry.js",
          "examples/js/lines/LineMaterial.js", "examples/js/lines/LineSegments2.js",

@@ -1,5 +1,5 @@
 // Stages' messages as scenes for Foxglove's 3D panel, without visualizer and markers.
-// scripts/bundle.py puts theme.js, geometry.js, octomap.js and sight.js before it, main.js the places
+// scripts/bundle.py puts theme.js, geometry.js, world.js, parts.js, messages.js, octomap.js and sight.js before it, main.js the places
 // to look at, kPlaces: [[x, y, z], ...]. Frame map, [m].
 'use strict';
 
@@ -30,9 +30,10 @@ const triangles = (points, indices, color, colors = []) =>
     ({pose: kStill, points: points.map(point), color, colors, indices});
 
 // The visible faces of a map below what hides the places, brighter the higher, darker in nooks.
-function mapTriangles(voxels, low, high, opacity) {
+// @param wanted the faces, if not all
+function mapTriangles(voxels, low, high, opacity, wanted = null) {
   const top = kPlaces.length ? voxels.layersBelow(Goshawk.bestCut(voxels, kPlaces)) : voxels.size[2];
-  const faces = Goshawk.voxelFaces(voxels, 0, top);
+  const faces = wanted || Goshawk.voxelFaces(voxels, 0, top);
   const points = [], colors = [], indices = [], unit = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
   const count = Math.min(faces.face.length, kMostFaces);
   for (let f = 0; f < count; ++f) {
@@ -63,6 +64,9 @@ function remembered(make) {
   };
 }
 
+// How many messages of each kind were drawn, here and for tests.
+const drawn = globalThis.goshawkDrawn = {};
+
 const shade = color => { const {r, g, b} = hex(color); return [r, g, b]; };
 const kTheme = Goshawk.themes.dark;
 
@@ -70,14 +74,63 @@ const obstaclesOnce = remembered(m => {
   const voxels = Goshawk.octomapVoxels(m.data, m.resolution);
   return voxels ? [mapTriangles(voxels, shade(kTheme.low), shade(kTheme.high), 1)] : [];
 });
-const grownOnce = remembered(m => {
-  const voxels = Goshawk.Voxels.fromBigWords(
-      xyz(m.origin), m.resolution, [m.size_x, m.size_y, m.size_z], m.grown);
-  return [mapTriangles(voxels, shade(kTheme.grown), shade(kTheme.grown), 0.12)];
-});
+// The vehicle's map as it was last said to be; updates that follow are drawn twice a second.
+const kRedraw_s = 0.5;
+let map = null;  // {grown, known, obstacles: Voxels, drawn [s]}
+
+function wholeMap(m) {
+  const read = words => Goshawk.Voxels.fromBigWords(xyz(m.origin), m.resolution, [m.size_x, m.size_y, m.size_z], words);
+  const seen = m.raw && m.raw.length > 0 && m.known.length > 0;
+  map = {version: m.version, unknown: m.unknown_is_occupied ? 1 : 0, drawn: -Infinity, grown: read(m.grown),
+         known: seen ? read(m.known) : null, obstacles: seen ? read(m.raw) : null};
+}
+
+const bytesOf = words => new Uint8Array(words.buffer, words.byteOffset, words.byteLength);
+
+// @return whether the map was drawn long enough ago
+function updateMap(m) {
+  if (!map || map.version !== m.from_version) return false;
+  const shift = [m.shift_word_x, m.shift_brick_y, m.shift_brick_z];
+  map.grown.moveWindow(shift, map.unknown);
+  if (map.known) for (const voxels of [map.known, map.obstacles]) voxels.moveWindow(shift, 0);
+  for (const brick of m.bricks) {
+    map.grown.setBrick(brick, bytesOf(brick.grown));
+    if (!map.known) continue;
+    map.known.setBrick(brick, bytesOf(brick.known));
+    map.obstacles.setBrick(brick, bytesOf(brick.raw));
+  }
+  map.version = m.to_version;
+  const t = seconds(m.header.stamp);
+  if (t - map.drawn < kRedraw_s && t >= map.drawn) return false;
+  map.drawn = t;
+  return true;
+}
+
+// What was measured so far, and the edge of the unseen.
+function mapEntities(stamp) {
+  if (!map.known && drawn['octomap_msgs/msg/Octomap']) return [];  // its obstacles are drawn already
+  if (!map.known) return [entity('grown', stamp, {triangles: [mapTriangles(map.grown, shade(kTheme.grown), shade(kTheme.grown), 0.12)]})];
+  const edge = Goshawk.frontierFaces(map.known, map.obstacles, 0, map.known.size[2], [[0, 0, 0], map.known.size]);
+  return [
+    entity('obstacles seen', stamp, {triangles: [mapTriangles(map.obstacles, shade(kTheme.low), shade(kTheme.high), 1)]}),
+    entity('edge of the unseen', stamp, {triangles: [
+      mapTriangles(map.known, shade(kTheme.unseen), shade(kTheme.unseen), 0.10, edge)]})];
+}
 
 const obstacles = m => scene([entity('obstacles', m.header.stamp, {triangles: obstaclesOnce(m.data, m)})]);
-const grown = m => scene([entity('grown', m.header.stamp, {triangles: grownOnce(m.grown, m)})]);
+// Whole maps come again, also with every jump in time. Once updates are drawn, whole maps are not: theirs is
+// another topic, and both would stay.
+let updatesDrawn = false;
+function grown(m) {
+  if (!map || map.version !== m.version) wholeMap(m);
+  if (!updatesDrawn) return scene(mapEntities(m.header.stamp));
+  return {deletions: [{timestamp: m.header.stamp, type: 1, id: ''}], entities: []};
+}
+function updated(m) {
+  if (!updateMap(m)) return scene([]);
+  updatesDrawn = true;
+  return scene(mapEntities(m.header.stamp));
+}
 
 function path(m) {
   return scene([
@@ -107,6 +160,37 @@ function corridorParts(polytopes) {
           lines: [line(edges, 1, hex(kTheme.corridor, 0.55), {type: 2, scale_invariant: true})]};
 }
 
+// Where the commit parts, its nominal part from there, and its stop part; nothing if it has none.
+function stopParts(m, trajectory) {
+  const nominal = m.stop_after > 0 ? Goshawk.readPieces(m.nominal.pieces) : null;
+  const parts = Goshawk.commitParts({trajectory, stopAfter: m.stop_after, nominal});
+  if (!parts) return {};
+  const ball = (p, d) => ({pose: {position: point(p), orientation: kStill.orientation}, size: point([d, d, d]),
+                           color: hex(kTheme.stop)});
+  return {lines: [line(parts.nominal, 0.03, hex(kTheme.nominal, 0.8)), line(parts.stop, 0.08, hex(kTheme.stop))],
+          spheres: [ball(parts.at, 0.12), ball(parts.rest, 0.18)]};
+}
+
+// Boxes that move, as they are.
+function movers(m) {
+  const cubes = m.boxes.map(b => ({pose: b.pose, size: point(xyz(b.half_extents).map(h => 2 * h)),
+                                   color: hex(kTheme.mover, 0.6)}));
+  return scene([entity('moving boxes', m.header.stamp, {cubes})]);
+}
+
+// Where they are thought to go, and the boxes that hold them then.
+function predicted(m) {
+  const lines = [];
+  for (const box of m.obstacles.map(Goshawk.predictedBox).filter(b => b.track.length)) {
+    const shapes = Goshawk.predictedShapes(box);
+    lines.push(line(shapes.line, 0.04, hex(kTheme.mover)));
+    for (const {p, half} of shapes.boxes) {
+      lines.push(line(Goshawk.boxEdges(p, box.q, half), 1, hex(kTheme.mover, 0.5), {type: 2, scale_invariant: true}));
+    }
+  }
+  return scene([entity('predictions', m.header.stamp, {lines})]);
+}
+
 function committed(m) {
   const v_max = m.nominal.request.limits.v_max;
   const polytopes = [...m.nominal.polytopes, ...m.stop_polytopes];
@@ -118,7 +202,8 @@ function committed(m) {
     colors.push(rgba(Goshawk.speedColor(V3.norm(s.velocity) / v_max)));
   }
   return scene([entity('corridor', m.header.stamp, corridorParts(polytopes)),
-                entity('trajectory', m.header.stamp, {lines: [line(points, 0.06, rgba([1, 1, 1]), {colors})]})]);
+                entity('trajectory', m.header.stamp, {lines: [line(points, 0.06, rgba([1, 1, 1]), {colors})]}),
+                entity('stop part', m.header.stamp, stopParts(m, trajectory))]);
 }
 
 // Arms and rotors, as they are turned.
@@ -158,10 +243,10 @@ function flown(m) {
 
 module.exports.activate = context => {
   const draws = {'octomap_msgs/msg/Octomap': obstacles, 'goshawk_msgs/msg/VoxelGrid': grown,
+                 'goshawk_msgs/msg/VoxelGridUpdate': updated, 'goshawk_msgs/msg/MovingBoxes': movers,
+                 'goshawk_msgs/msg/PredictedObstacles': predicted,
                  'goshawk_msgs/msg/Path': path, 'goshawk_msgs/msg/CommittedTrajectory': committed,
                  'nav_msgs/msg/Odometry': flown};
-  // How many of each kind were drawn, for tests.
-  const drawn = globalThis.goshawkDrawn = {};
   for (const [fromSchemaName, draw] of Object.entries(draws)) {
     drawn[fromSchemaName] = 0;
     const converter = message => {

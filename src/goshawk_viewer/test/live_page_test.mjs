@@ -61,6 +61,9 @@ for (const name of ['mode', 'position', 'altitude', 'speed', 'to go', 'nearest o
   check(glance.includes(name), `the glance tells ${name}: ${glance.replaceAll('\n', ' ')}`);
 }
 
+check(await until(page, () => /vehicle (flies|hovers)/.test(document.getElementById('why').textContent)),
+      `the page says why: ${await page.textContent('#why')}`);
+
 if (screenshot) await page.screenshot({path: screenshot});
 check(await until(page, () => goshawk.seen.includes('arrived')), 'it arrives');
 check(await until(page, p => Math.hypot(

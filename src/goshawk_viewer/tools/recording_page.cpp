@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "goshawk/flight_report/page.hpp"
-#include "recorded_flight.hpp"
+#include "goshawk/viewer/recorded_flight.hpp"
 
 using namespace goshawk;
 

@@ -97,8 +97,8 @@ std::optional<int> ChildVerb::ended() {
 }
 
 Error ChildVerb::failure() const {
-  Error error = fail(ErrorCode::stage_silent,
-                     fmt::format("it ended without a reason: see {}", output_file_));
+  Error error =
+      fail(ErrorCode::stage_silent, fmt::format("it ended without a reason: see {}", output_file_));
   std::ifstream file(output_file_);
   for (std::string line; std::getline(file, line);) {
     const auto object = nlohmann::json::parse(line, nullptr, false);

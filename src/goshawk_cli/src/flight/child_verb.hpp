@@ -11,8 +11,8 @@
 
 namespace goshawk::cli {
 
-/// The domain to work in: ROS_DOMAIN_ID if it is set, otherwise one that no other Goshawk command on
-/// this machine works in, held until this process ends.
+/// The domain to work in: ROS_DOMAIN_ID if it is set, otherwise one that no other Goshawk command
+/// on this machine works in, held until this process ends.
 Result<int> private_domain();
 
 /// A `goshawk` verb as a child of this process, in a process group of its own. It stops when this

@@ -8,6 +8,7 @@
 
 #include "flight/child_verb.hpp"
 #include "flight/flight_folder.hpp"
+#include "flight/recorded_world.hpp"
 #include "flight/recorder_process.hpp"
 #include "goshawk/conversions/status.hpp"
 #include "goshawk/introspection/interruptible.hpp"
@@ -52,6 +53,7 @@ class Flight {
         if (!options_.keep_going || !launch_lives()) break;
       }
     }
+    outcome.end_ns = record_.now_ns();
     record_.tell("end", Json::object());
     launch_.stop();
     outcome.verdict = judge();
@@ -262,9 +264,13 @@ Result<Json> fly(const FlyOptions& options, const Preparation& p, const Say& say
   if (recorder) recorder->stop();
   if (outcome.refusal) return *outcome.refusal;
   guard.keep();
-  const Json summary = summary_json(outcome, flight.record(), *folder);
+  Json summary = summary_json(outcome, flight.record(), *folder);
+  summary["why"] = nullptr;
+  if (recorder && !outcome.all_arrived()) {
+    summary["why"] = recorded_reason(*folder, outcome.end_ns);
+  }
   if (auto written = write_flight(*folder, summary, flight.record(), p.tour.goals_map, p.map,
-                                  p.config.map.radius_m);
+                                  p.config.map.radius_m, recorder.has_value(), say);
       !written) {
     return written.error();
   }

@@ -4,6 +4,7 @@
 
 #include <fstream>
 
+#include "flight/recorded_world.hpp"
 #include "goshawk/flight_report/files.hpp"
 #include "goshawk/flight_report/page.hpp"
 #include "process.hpp"
@@ -37,8 +38,8 @@ std::vector<flight_check::Sample> flown_track(const FlightRecorder& record) {
 }
 
 Status write_flight(const std::string& folder, const Json& summary, const FlightRecorder& record,
-                    const std::vector<Vec3>& goals_map, const LoadedMap& map,
-                    double body_radius_m) {
+                    const std::vector<Vec3>& goals_map, const LoadedMap& map, double body_radius_m,
+                    bool recorded, const std::function<void(const std::string&)>& say) {
   std::ofstream json(folder + "/flight.json");
   json << summary.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
   if (!json.flush()) {
@@ -62,10 +63,15 @@ Status write_flight(const std::string& folder, const Json& summary, const Flight
     flight.flown.push_back(
         {seconds(stamp_ns, origin_ns), state.position_map, state.velocity_map, state.q_map_base});
   }
+  if (recorded) {
+    if (auto added = add_recorded_world(folder, origin_ns, flight); !added) {
+      say(fmt::format("the page shows no growth of the map: {}", added.error().message));
+    }
+    if (auto drawn = draw_growth(flight, folder); !drawn) return drawn;
+  }
   if (auto drawn = flight_report::write_flight_folder(flight, folder); !drawn) return drawn;
-  return flight_report::write_flight_page(
-      flight, page_template(), folder + "/flight.html",
-      to_line(summary));
+  return flight_report::write_flight_page(flight, page_template(), folder + "/flight.html",
+                                          to_line(summary));
 }
 
 }  // namespace goshawk::cli

@@ -206,6 +206,9 @@ void print_summary(const Json& summary) {
   fmt::print("verdict: {}{}{}\n", text(summary, "verdict"),
              summary["code"] == "ok" ? "" : ", " + text(summary, "code"),
              summary["message"] == "" ? "" : ": " + text(summary, "message"));
+  if (const auto& why = summary["why"]; !why.is_null()) {
+    fmt::print("why: {} {}\n", text(why, "because"), text(why, "mend"));
+  }
   const auto folder = text(summary, "folder");
   fmt::print("flight folder: {}\nlook at it:    {}/flight.html (opens by double click)\n", folder,
              folder);

@@ -21,6 +21,7 @@ struct LegOutcome {
 
 struct FlightOutcome {
   std::vector<LegOutcome> legs;
+  std::int64_t end_ns = 0;       // when the last goal was reached or given up
   std::optional<Error> refusal;  // the call was wrong: nothing was flown
   Result<flight_check::Verdict> verdict = fail(ErrorCode::invalid_input, "not judged");
 

@@ -3,6 +3,8 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <functional>
 
@@ -58,11 +60,28 @@ Status place_ends(const PlanningConfig& config, const VoxelGrid& grid, bool all_
   return success();
 }
 
+/// In a live flight the faces of the world are walls, and the map ends a voxel before them.
+std::shared_ptr<const VoxelGrid> within_faces(const VoxelGrid& world) {
+  constexpr double kWall_m = 0.5;  // inflation, reserve, a voxel, and some for the sensor's noise
+  auto grid = std::make_shared<VoxelGrid>(world);
+  const Index3 size = grid->geometry.size;
+  const int wall = int(std::ceil(kWall_m / grid->geometry.resolution_m));
+  for (int z = 0; z < size.z; ++z) {
+    for (int y = 0; y < size.y; ++y) {
+      const bool outer = std::min({y, size.y - 1 - y, z, size.z - 1 - z}) < wall;
+      grid->grown.set_run(0, outer ? size.x : std::min(wall, size.x), y, z, true);
+      grid->grown.set_run(std::max(0, size.x - wall), size.x, y, z, true);
+    }
+  }
+  return grid;
+}
+
 Result<Tour> make_tour(const FlyOptions& o, const PlanningConfig& config, const LoadedMap& map) {
   if (o.random > 0) {
     auto search = path_search::PathSearch::create(config.search);
     if (!search) return search.error();
-    return random_tour(map.grown, *search, o.random, o.seed, o.min_distance_m);
+    return random_tour(o.live ? within_faces(*map.grown) : map.grown, *search, o.random, o.seed,
+                       o.min_distance_m);
   }
   if (!config.needs_world() && (!o.start_map || o.goals_map.empty())) {
     return fail(ErrorCode::invalid_parameter,

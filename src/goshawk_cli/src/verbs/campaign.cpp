@@ -39,30 +39,29 @@ int run_campaign(CampaignOptions o, const Console& console) {
   }
   Words parameters = o.parameters;
   if (parameters.empty() && o.launch == kLockStep) parameters = {"simulator:speed:=0"};
-  return become_helper(
-      "campaign.py",
-      {{"missions", o.missions},
-       {"goals", o.goals},
-       {"seed", o.seed},
-       {"kinds", o.kinds},
-       {"densities", o.densities},
-       {"wind", o.wind_m_s},
-       {"noise", o.noise_m},
-       {"size", fmt::format("{},{},{}", o.size_m.x(), o.size_m.y(), o.size_m.z())},
-       {"jobs", o.jobs ? Json(*o.jobs) : Json()},
-       {"engine", o.engine},
-       {"sbatch", o.sbatch},
-       {"timeout_s", o.timeout_s},
-       {"faults", o.faults},
-       {"launch", o.launch},
-       {"parameters", parameters},
-       {"output", o.output}},
-      console);
+  return become_helper("campaign.py",
+                       {{"missions", o.missions},
+                        {"goals", o.goals},
+                        {"seed", o.seed},
+                        {"kinds", o.kinds},
+                        {"densities", o.densities},
+                        {"wind", o.wind_m_s},
+                        {"noise", o.noise_m},
+                        {"size", fmt::format("{},{},{}", o.size_m.x(), o.size_m.y(), o.size_m.z())},
+                        {"jobs", o.jobs ? Json(*o.jobs) : Json()},
+                        {"engine", o.engine},
+                        {"sbatch", o.sbatch},
+                        {"timeout_s", o.timeout_s},
+                        {"faults", o.faults},
+                        {"launch", o.launch},
+                        {"parameters", parameters},
+                        {"output", o.output}},
+                       console);
 }
 
 /// Numbers with commas between them.
-void add_numbers(const Verb& verb, const std::string& name, std::vector<double>& values, double most,
-                 const std::string& what) {
+void add_numbers(const Verb& verb, const std::string& name, std::vector<double>& values,
+                 double most, const std::string& what) {
   verb->add_option(name, values, what)
       ->delimiter(',')
       ->check(CLI::Range(0.0, most))
@@ -105,7 +104,8 @@ void add_campaign(Program& program) {
       ->check(CLI::IsMember({"kill", "stall", "clock", "loss", "blind", "hostile"}));
   auto* launch = verb->add_option("--launch", o->launch,
                                   "launch file (default: flight_lock_step, where missions repeat "
-                                  "bit for bit; with --faults flight)");
+                                  "bit for bit; with --faults flight). live: without a map, by "
+                                  "a lidar");
   verb.completes(launch, launch_files);
   verb->add_option("-p", o->parameters,
                    "NODE:NAME:=VALUE of a stage; may repeat (default in lock step: "

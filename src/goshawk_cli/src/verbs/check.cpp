@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "goshawk/flight_check/mover_check.hpp"
 #include "goshawk/flight_check/track_file.hpp"
+#include "goshawk/movers/movers_file.hpp"
 #include "json.hpp"
 #include "values.hpp"
 #include "verbs/verbs.hpp"
@@ -13,6 +15,8 @@ namespace {
 
 using flight_check::Body;
 using flight_check::FlightCheck;
+using flight_check::MoverCheck;
+using flight_check::MoverVerdict;
 using flight_check::Verdict;
 
 struct CheckOptions {
@@ -22,6 +26,8 @@ struct CheckOptions {
   std::optional<Vec3> box_m;
   bool unknown = false;
   double yaw_rad = 0.0;
+  std::string movers;
+  double movers_start_s = 0.0;
 };
 
 Json verdict_json(const Verdict& v) {
@@ -33,15 +39,27 @@ Json verdict_json(const Verdict& v) {
           {"sentence", v.sentence}};
 }
 
+Json movers_json(const std::optional<MoverVerdict>& v) {
+  if (!v) return nullptr;
+  return {{"touched", v->touched},
+          {"smallest_m", to_json(v->clearance_m)},
+          {"at_s", to_json(v->clearance_t_s)},
+          {"place", to_json(v->clearance_place_map)},
+          {"sentence", v->sentence()}};
+}
+
 struct Judged {
   Verdict flown;
-  std::vector<Verdict> planned;  // leg by leg
+  std::vector<Verdict> planned;        // leg by leg
+  std::optional<MoverVerdict> movers;  // of what was flown, if it is known what moves
 
-  /// The flight's own contact, else the first planned one; nullptr if nothing was touched.
-  const Verdict* contact() const {
-    if (flown.touched) return &flown;
+  /// About the flight's own contact with the map or with a mover, else about the first planned one;
+  /// empty if nothing was touched.
+  std::string contact() const {
+    if (flown.touched) return flown.sentence;
+    if (movers && !movers->touched.empty()) return movers->sentence();
     const auto leg = std::ranges::find_if(planned, &Verdict::touched);
-    return leg == planned.end() ? nullptr : &*leg;
+    return leg == planned.end() ? "" : leg->sentence;
   }
 };
 
@@ -57,14 +75,26 @@ Result<Body> body_of(const CheckOptions& o) {
   return body;
 }
 
+Result<std::optional<MoverVerdict>> judge_movers(const CheckOptions& o, const Body& body,
+                                                 std::span<const flight_check::Sample> track) {
+  if (o.movers.empty()) return std::optional<MoverVerdict>();
+  auto movers = movers::read_movers(o.movers);
+  if (!movers) return movers.error();
+  const auto check = MoverCheck::create(*std::move(movers), o.movers_start_s, body);
+  if (!check) return check.error();
+  auto verdict = check->judge(track);
+  if (!verdict) return verdict.error();
+  return std::optional(*std::move(verdict));
+}
+
 Result<Judged> judge(const CheckOptions& o, const Body& body) {
   const std::filesystem::path flight(o.flight);
   std::error_code ignored;
   const bool folder = std::filesystem::is_directory(flight, ignored);
   if (!folder && o.map.empty()) {
-    return fail(ErrorCode::invalid_parameter,
-                fmt::format("'{}' is not a flight folder: name one, or a table and its --map",
-                            o.flight));
+    return fail(
+        ErrorCode::invalid_parameter,
+        fmt::format("'{}' is not a flight folder: name one, or a table and its --map", o.flight));
   }
   const auto check =
       FlightCheck::open(o.map.empty() ? flight / "world.bt" : std::filesystem::path(o.map), body,
@@ -75,7 +105,9 @@ Result<Judged> judge(const CheckOptions& o, const Body& body) {
   if (auto gaps = flight_check::check_gaps(*track); !gaps) return gaps.error();
   auto flown = check->judge(*track);
   if (!flown) return flown.error();
-  Judged judged{*std::move(flown), {}};
+  auto movers = judge_movers(o, body, *track);
+  if (!movers) return movers.error();
+  Judged judged{*std::move(flown), {}, *std::move(movers)};
   if (!folder || !std::filesystem::exists(flight / "trajectory.csv", ignored)) return judged;
   const auto legs = flight_check::read_planned_csv(flight / "trajectory.csv", o.yaw_rad);
   if (!legs) return legs.error();
@@ -88,23 +120,25 @@ Result<Judged> judge(const CheckOptions& o, const Body& body) {
 }
 
 Json judged_json(const Judged& judged) {
-  const Verdict* contact = judged.contact();
+  const std::string contact = judged.contact();
   Json planned = Json::array();
   for (const auto& verdict : judged.planned) planned.push_back(verdict_json(verdict));
-  return {{"ok", contact == nullptr},
-          {"code", to_string(contact == nullptr ? ErrorCode::ok : ErrorCode::collision)},
-          {"message", contact == nullptr ? "" : contact->sentence},
-          {"verdict", contact == nullptr ? "safe" : "touched"},
+  return {{"ok", contact.empty()},
+          {"code", to_string(contact.empty() ? ErrorCode::ok : ErrorCode::collision)},
+          {"message", contact},
+          {"verdict", contact.empty() ? "safe" : "touched"},
           {"flown", verdict_json(judged.flown)},
+          {"movers", movers_json(judged.movers)},
           {"planned", planned}};
 }
 
 void print(const Judged& judged) {
   fmt::print("flown    {}\n", judged.flown.sentence);
+  if (judged.movers) fmt::print("movers   {}\n", judged.movers->sentence());
   for (std::size_t i = 0; i < judged.planned.size(); ++i) {
     fmt::print("leg {:<4} {}\n", i + 1, judged.planned[i].sentence);
   }
-  fmt::print("verdict: {}\n", judged.contact() == nullptr ? "safe" : "touched");
+  fmt::print("verdict: {}\n", judged.contact().empty() ? "safe" : "touched");
 }
 
 int run_check(const CheckOptions& o, const Console& console) {
@@ -113,7 +147,7 @@ int run_check(const CheckOptions& o, const Console& console) {
   const auto judged = judge(o, *body);
   if (!judged) return console.failed(judged.error());
   console.json() ? console.print(judged_json(*judged)) : print(*judged);
-  return judged->contact() == nullptr ? kDone : kNotDone;
+  return judged->contact().empty() ? kDone : kNotDone;
 }
 
 }  // namespace
@@ -133,6 +167,11 @@ void add_check(Program& program) {
   verb->add_option("--yaw", o->yaw_rad, "[rad] of the planned legs")->capture_default_str();
   verb->add_flag("--unknown", o->unknown,
                  "unknown space and everything outside of the map are obstacles");
+  verb->add_option("--movers", o->movers,
+                   "what moved (docs/movers.md): judged against what was flown");
+  verb->add_option("--movers-start", o->movers_start_s,
+                   "[s] of the table, when the movers' time is 0; may be negative")
+      ->capture_default_str();
   verb->footer(
       "Examples:\n"
       "  goshawk check flights/DATE\n"

@@ -1,8 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-#include <map>
 #include <optional>
 #include <set>
 
@@ -35,62 +32,90 @@ std::optional<std::uint16_t> channel_of(const recording::Reader& reader, const s
   return {};
 }
 
-/// Which of so many maps are drawn: the first, the last, and others evenly between.
-std::set<std::uint64_t> chosen(std::uint64_t maps, int panels) {
-  std::set<std::uint64_t> numbers{maps - 1};
-  for (int k = 0; k + 1 < panels; ++k) {
-    numbers.insert(std::uint64_t(std::llround(double(k) * double(maps - 1) / (panels - 1))));
-  }
-  return numbers;
+template <typename Message>
+Result<Message> decoded(const recording::MessageView& view) {
+  Message m;
+  if (runtime::decode<Message>({view.data.begin(), view.data.end()}, m)) return m;
+  return fail(ErrorCode::invalid_input, "a message of the map cannot be decoded");
 }
+
+/// Reads one recording.
+class Growth {
+ public:
+  explicit Growth(std::uint64_t start_ns) : start_ns_(start_ns) {}
+
+  Status take_map(const recording::MessageView& view) {
+    const auto m = decoded<goshawk_msgs::msg::VoxelGrid>(view);
+    if (!m) return m.error();
+    auto grid = conversions::from_msg(*m);
+    if (!grid) return grid.error();
+    maps_.take(seconds(view), *std::move(grid));
+    return success();
+  }
+
+  Status take_update(const recording::MessageView& view) {
+    const auto m = decoded<goshawk_msgs::msg::VoxelGridUpdate>(view);
+    if (!m) return m.error();
+    const auto update = conversions::from_msg(*m);
+    return update ? maps_.take(seconds(view), *update) : Status(update.error());
+  }
+
+  void take_odometry(const recording::MessageView& view) {
+    const auto m = decoded<nav_msgs::msg::Odometry>(view);
+    const auto state = m ? conversions::from_msg(*m) : m.error();
+    if (state) track_.emplace_back(seconds(view), state->position_map);
+  }
+
+  std::vector<MapMoment> moments(std::size_t count) const {
+    auto moments = flight_report::spread(maps_.moments(), count);
+    for (MapMoment& moment : moments) {
+      for (const auto& [t_s, place] : track_) {
+        if (t_s <= moment.t_s) moment.track_map.push_back(place);
+      }
+    }
+    return moments;
+  }
+
+ private:
+  double seconds(const recording::MessageView& view) const {
+    return 1e-9 * double(view.log_time_ns - start_ns_);
+  }
+
+  std::uint64_t start_ns_;
+  flight_report::MapTimeline maps_;
+  std::vector<std::pair<double, Vec3>> track_;  // [s], [m]
+};
 
 Result<std::vector<MapMoment>> read_moments(const PictureOptions& o) {
   auto reader = recording::Reader::open(o.recording);
   if (!reader) return reader.error();
-  const auto maps = channel_of(*reader, "map/voxels"), odometry = channel_of(*reader, "odom");
+  const auto maps = channel_of(*reader, "map/voxels"), odometry = channel_of(*reader, "odom"),
+             updates = channel_of(*reader, "map/voxels/updates");
   if (!maps || reader->message_count(*maps) == 0) {
     return fail(ErrorCode::invalid_input,
                 "the recording has no map/voxels: record a flight with its topics");
   }
   recording::ReadOptions what;
   what.channels.emplace(std::set{*maps});
+  if (updates) what.channels->insert(*updates);
   if (odometry) what.channels->insert(*odometry);
   if (auto same = recording::check_layout(*reader, *what.channels); !same) return same.error();
 
-  const auto numbers = chosen(reader->message_count(*maps), o.panels);
-  std::uint64_t number = 0;
-  std::vector<Vec3> track;
-  std::vector<MapMoment> moments;
+  Growth growth(reader->start_ns());
   Status fault = success();
-  const auto take_map = [&](const recording::MessageView& view) {
-    if (!numbers.contains(number++)) return;
-    goshawk_msgs::msg::VoxelGrid m;
-    if (!runtime::decode<goshawk_msgs::msg::VoxelGrid>({view.data.begin(), view.data.end()}, m)) {
-      fault = fail(ErrorCode::invalid_input, "a message of map/voxels cannot be decoded");
-      return;
-    }
-    auto grid = conversions::from_msg(m);
-    if (!grid) {
-      fault = grid.error();
-      return;
-    }
-    moments.push_back(
-        {1e-9 * double(view.log_time_ns - reader->start_ns()), *std::move(grid), track});
-  };
   const auto read = reader->read(what, [&](const recording::MessageView& view) {
     if (view.channel_id == *maps) {
-      take_map(view);
-      return fault.ok();
+      fault = growth.take_map(view);
+    } else if (view.channel_id == updates) {
+      fault = growth.take_update(view);
+    } else {
+      growth.take_odometry(view);
     }
-    nav_msgs::msg::Odometry m;
-    if (runtime::decode<nav_msgs::msg::Odometry>({view.data.begin(), view.data.end()}, m)) {
-      if (const auto state = conversions::from_msg(m)) track.push_back(state->position_map);
-    }
-    return true;
+    return fault.ok();
   });
   if (!read) return read.error();
   if (!fault) return fault.error();
-  return moments;
+  return growth.moments(std::size_t(o.panels));
 }
 
 }  // namespace

@@ -6,8 +6,9 @@
 #include <filesystem>
 #include <set>
 
-#include "flight/snapshot_collector.hpp"
+#include "flight/why_json.hpp"
 #include "goshawk/introspection/session.hpp"
+#include "goshawk/why_messages/snapshot_collector.hpp"
 #include "json.hpp"
 #include "verbs/verbs.hpp"
 
@@ -20,29 +21,11 @@ struct WhyOptions {
   VehicleOptions vehicle;
 };
 
-Json json_of(const why::Reason& reason) {
-  Json object = ok_json();
-  object["binds"] = why::to_string(reason.binds);
-  object["doing"] = reason.doing;
-  object["because"] = reason.because;
-  object["mend"] = reason.mend;
-  object["stage"] = reason.stage ? Json(to_string(*reason.stage)) : Json(nullptr);
-  object["parameter"] = reason.parameter.empty() ? Json(nullptr) : Json(reason.parameter);
-  object["voxel"] = nullptr;
-  if (reason.voxel) {
-    const auto& voxel = *reason.voxel;
-    object["voxel"] = {{"index", {voxel.index.x, voxel.index.y, voxel.index.z}},
-                       {"center", to_json(voxel.center_map)},
-                       {"known", voxel.known},
-                       {"distance_m", to_json(voxel.distance_m)}};
-  }
-  return object;
-}
-
 int tell(const why::Snapshot& snapshot, const Console& console) {
   const why::Reason reason = why::explain(snapshot);
   if (console.json()) {
-    Json object = json_of(reason);
+    Json object = ok_json();
+    object.update(to_json(reason));
     object["map_version"] = snapshot.map ? Json(snapshot.map->version) : Json(nullptr);
     object["map_age_s"] = snapshot.map ? to_json(snapshot.map_age_s) : Json(nullptr);
     console.print(object);
@@ -91,7 +74,7 @@ int why_recorded(const WhyOptions& o, const Console& console) {
          fmt::format("--at {:g}: the recording lasts {:.2f} s", at_s, length_s)});
   }
   const std::uint64_t until_ns = reader->start_ns() + std::uint64_t(at_s * 1e9);
-  SnapshotCollector collector;
+  why::SnapshotCollector collector;
   if (auto status = collector.read(*reader, *space, until_ns); !status) {
     return console.failed(status.error());
   }
@@ -103,7 +86,7 @@ int why_live(const WhyOptions& o, const Console& console) {
   if (!space) return console.failed(space.error());
   auto session = introspection::Session::open();
   if (!session) return console.failed(session.error());
-  SnapshotCollector collector;
+  why::SnapshotCollector collector;
   collector.listen((*session)->node(), *space);
   (*session)->wait_for(o.vehicle.ready_s, [&] { return collector.is_complete(); });
   // What is latched has come by now; what is silent shows.

@@ -13,6 +13,8 @@ struct Config {
   Body body;
   Options options;
   double period_s = 0.2;
+  std::string movers_file = "";
+  double movers_start_s = 0.0;
 };
 
 template <typename Self, typename Visitor>
@@ -32,6 +34,12 @@ void describe(Self& c, Visitor&& visit) {
         "the smallest clearance is found to within this distance", Range{1e-5, 1.0});
   visit("period_s", c.period_s, "s", "how often the latest part of the flight is judged",
         Range{0.01, 10.0});
+  visit("movers_file", c.movers_file, "",
+        "what moves in the true world (docs/movers.md): what was flown is judged against it too",
+        Anything{});
+  visit("movers_start_s", c.movers_start_s, "s",
+        "stamp at which the movers' time is 0; the same for all that read the file",
+        Range{0.0, 1e10});
 }
 
 }  // namespace goshawk::flight_check

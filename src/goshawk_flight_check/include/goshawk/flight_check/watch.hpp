@@ -1,10 +1,12 @@
 #pragma once
 
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "goshawk/flight_check/discontinuity.hpp"
 #include "goshawk/flight_check/flight_check.hpp"
+#include "goshawk/flight_check/mover_check.hpp"
 
 namespace goshawk::flight_check {
 
@@ -21,12 +23,14 @@ struct Finding {
   enum class Kind {
     planned,  // about a plan, before it is flown; again if a newer map says otherwise
     flown,    // about what was flown of a plan, when it is over
-    contact,  // the vehicle touches something now
+    contact,  // the vehicle touches something of the map now
+    mover,    // the vehicle touches something that moves now; movers says what
     event,    // odometry that is not a path; outcome says what
   };
   Kind kind = Kind::event;
-  std::uint64_t request_id = 0;  // 0: about no plan
-  Result<Verdict> outcome;       // or why there is none
+  std::uint64_t request_id = 0;          // 0: about no plan
+  Result<Verdict> outcome;               // or why there is none; for a mover: its failure
+  std::optional<MoverVerdict> movers{};  // of what was flown, if it is known what moves
 };
 
 /// The second opinion in flight: judges every plan when it is made and every part of the flight
@@ -35,6 +39,9 @@ class Watch {
  public:
   /// From here on this map counts. What is left of the plan is judged anew at the next tick.
   void set_map(FlightCheck check);
+
+  /// From here on what is flown is judged against these as well; plans are not.
+  void set_movers(MoverCheck movers) { movers_ = std::move(movers); }
 
   /// Judges the plan at once; it supersedes the one before, whose flown part is told.
   void commit(Plan plan);
@@ -59,10 +66,12 @@ class Watch {
     std::uint64_t id = 0;
     double end_s = 0.0;
     std::optional<Verdict> flown;  // the worst so far
+    std::optional<MoverVerdict> movers{};
   };
 
   void judge_plan_anew(double now_s);
   void judge_flown();
+  void judge_movers(std::span<const Sample> track);
   void finish_leg();
   void end_track(const std::string& why);
   double below_m() const;
@@ -76,6 +85,8 @@ class Watch {
   std::vector<Sample> track_;  // not judged yet, and the last that was
   std::optional<LiveSample> last_;
   bool touching_ = false;
+  std::optional<MoverCheck> movers_;
+  std::set<std::uint64_t> touching_movers_;
   std::vector<Finding> findings_;
 };
 

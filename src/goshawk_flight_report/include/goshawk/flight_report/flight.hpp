@@ -7,6 +7,8 @@
 #include "goshawk/core/committed_trajectory.hpp"
 #include "goshawk/core/grid_geometry.hpp"
 #include "goshawk/core/vehicle.hpp"
+#include "goshawk/flight_report/map_timeline.hpp"
+#include "goshawk/flight_report/movers.hpp"
 
 namespace goshawk::flight_report {
 
@@ -28,6 +30,9 @@ struct Leg {
   double start_t_s = 0.0;  // [s] when the trajectory began, on the flight's clock
   double yaw_rad = 0.0;    // heading all the way if there is no curve
   std::optional<YawCurve> yaw_curve = {};
+  double stop_after_s =
+      0.0;  // [s] after its start: the trajectory's stop part begins; 0: it has none
+  Trajectory nominal = {};  // to the goal: what the stop part leaves; empty without one
 
   /// What is flown of it, without the path.
   /// @param origin_ns when the flight's clock is 0
@@ -37,14 +42,25 @@ struct Leg {
   double yaw_at(double t_s) const { return yaw_curve ? yaw_curve->yaw_rad(t_s) : yaw_rad; }
 };
 
+/// What was followed of a leg's trajectory.
+struct FollowedLeg {
+  const Leg* leg = nullptr;
+  Trajectory trajectory;    // up to where a newer leg replaced it
+  double duration_s = 0.0;  // [s]
+  bool whole = true;        // no newer leg replaced it
+};
+
 /// All that the pictures and files of one flight are made from.
 struct Flight {
   std::string title = "Goshawk flight";
   const VoxelGrid* obstacles = nullptr;  // not owned: the map as it is, or nothing
   const VoxelGrid* grown = nullptr;      // not owned: grown by the vehicle, or nothing
-  std::vector<Leg> legs;  // in the order in which they were committed
+  std::vector<Leg> legs;                 // in the order in which they were committed
   std::vector<FlownSample> flown;
-  std::vector<Vec3> goals_map = {};  // [m] as they were sent; empty: the ends of the legs
+  std::vector<Vec3> goals_map = {};       // [m] as they were sent; empty: the ends of the legs
+  std::vector<MapMoment> maps = {};       // how the map grew, oldest first; on the flight's clock
+  std::vector<MoversMoment> movers = {};  // what moved, oldest first
+  std::vector<PredictionsMoment> predictions = {};  // where it was thought to go, oldest first
   Limits limits;
   double body_radius_m = 0.15;  // [m] obstacles this close in height to the flight are drawn dark
 
@@ -56,6 +72,14 @@ struct Flight {
   /// The start and the goals [m], frame `map`. A vehicle that plans anew in flight has more legs
   /// than goals. Empty if neither a leg nor the track has a place.
   std::vector<Vec3> stops_map() const;
+
+  /// The legs that were followed, in their order; those replaced at once are left out. Points into
+  /// legs.
+  std::vector<FollowedLeg> followed() const;
+
+  /// The legs that no newer one replaced, and those without a trajectory. A vehicle that plans anew
+  /// in flight replaces most of its legs.
+  std::vector<const Leg*> kept_legs() const;
 
   /// Where the vehicle should be at t_s: on the newest leg that had begun, at that leg's end once
   /// its time is over. Nothing before the first leg, or if no leg has a trajectory.

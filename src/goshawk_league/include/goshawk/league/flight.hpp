@@ -10,9 +10,11 @@ namespace goshawk::league {
 struct Options {
   closed_loop::Setup vehicle = {};  // the vehicle and its stages; limits and start are the scene's
   closed_loop::Tracking tracking = closed_loop::Tracking::physical;
-  bool known = false;          // the vehicle has the whole map from the beginning
-  double range_noise_m = 0.0;  // of the lidar, one sigma
-  std::uint64_t seed = 0;      // of noise and delays
+  bool known = false;                   // the vehicle has the whole map from the beginning
+  double range_noise_m = 0.0;           // of the lidar, one sigma
+  double range_m = 30.0;                // of the lidar
+  double view_rad = 6.283185307179586;  // of the lidar, around the vehicle's x axis
+  std::uint64_t seed = 0;               // of noise and delays
   /// [s] what each planning stage and each scan is taken to cost; nothing: what they cost, measured
   std::optional<double> latency_s = {};
 };
@@ -28,8 +30,9 @@ struct Moment {
 struct Outcome {
   bool arrived = false;
   std::string reason = {};  // why not
-  double time_s = 0.0;      // from the goal until it was at rest there, or was given up
-  double length_m = 0.0;    // flown
+  ErrorCode code = ErrorCode::ok;
+  double time_s = 0.0;    // from the goal until it was at rest there, or was given up
+  double length_m = 0.0;  // flown
   double top_speed_m_s = 0.0;
   flight_check::Verdict verdict;  // against the true world
   int violations = 0;        // samples of the reference (250 Hz) beyond a limit by more than 1e-3
@@ -52,7 +55,10 @@ struct Outcome {
 Result<Outcome> fly(const Scene& scene, const Options& options);
 
 /// The lidar of the league: 64 x 512 rays over 360 by 90 degrees, 10 Hz, 30 m, at the body's
-/// centre.
-sensors::SensorParameters league_lidar(double range_noise_m, std::uint64_t seed);
+/// centre; with the options' noise, range and view.
+sensors::SensorParameters league_lidar(const Options& options);
+
+/// What plans keep from obstacles: body, margin and reserve [m].
+double plan_clearance_m();
 
 }  // namespace goshawk::league

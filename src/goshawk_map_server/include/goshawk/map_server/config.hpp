@@ -51,6 +51,7 @@ struct Config {
   double pose_wait_s = 0.2;
   double pose_max_gap_s = 0.5;
   int max_points = 1'000'000;
+  bool any_sensor = false;
   double sensor_timeout_s = 2.0;
   bool publish_raw = false;
   std::string journal_file = "";
@@ -158,6 +159,11 @@ void describe_poses(Self& c, Visitor& visit) {
         "no pose is interpolated between odometry farther apart than this", Range{0.0, 10.0});
   visit("max_points", c.max_points, "", "clouds with more points are refused",
         Range{1.0, 100'000'000.0});
+  visit(
+      "any_sensor", c.any_sensor, "",
+      "take clouds, depth images and camera infos from every process; false: of each from one, the "
+      "first that is found",
+      Anything{});
   visit("sensor_timeout_s", c.sensor_timeout_s, "s",
         "a sensor of which no scan comes, or none that sees anything, for so long is reported; 0: "
         "never",

@@ -249,7 +249,10 @@ class Navigator {
   bool approaches() const;
   Status add_stop(Commitment& candidate, bool from_rest) const;
   void move_stop(std::int64_t now_ns);
+  bool stop_sooner(std::int64_t now_ns);
+  void commit_stop(std::optional<StopPart> stop);
   void improve(std::int64_t now_ns);
+  void improve_by_new_map(std::int64_t now_ns);
   double improvement_lead_s() const;
   void take_improvement(Commitment candidate, std::uint64_t number, std::int64_t now_ns);
   bool is_better(const Leg& other, std::int64_t now_ns) const;
@@ -277,6 +280,7 @@ class Navigator {
   FreeSpace space_;
   std::int64_t brake_again_ns_ = 0;  // of a hold
   std::int64_t improve_ns_ = 0;      // then the next improvement is asked for
+  bool superseded_by_map_ = false;   // the improvement before the one that is open
   double latency_s_ = 0.0;           // from request to answer, of late
   std::optional<std::int64_t> map_changed_ns_;
   std::optional<Tracked> tracked_;

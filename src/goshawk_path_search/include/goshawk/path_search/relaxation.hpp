@@ -12,8 +12,8 @@ namespace goshawk::path_search {
 /// (goshawk::line_is_free); a point that its neighbours no longer need is dropped. Every step
 /// shortens the polyline, so it is never longer than before. The ends stay.
 ///
-/// What comes out touches obstacles' surfaces by a hair: right for a length, but a corridor has
-/// less room at such a bend.
+/// The result touches the surfaces of obstacles: right for a length, but a corridor has less room
+/// at such a bend.
 /// @param points [voxel units, GridGeometry::to_grid] consecutive ones are connected. A leg that is
 /// not free (under squeeze) stays as it is, unless a free one can take its place
 /// @return how many points moved or were dropped

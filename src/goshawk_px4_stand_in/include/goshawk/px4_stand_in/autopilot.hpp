@@ -89,7 +89,7 @@ class Autopilot {
   bool flies_attitude() const;
   bool wants_up(const px4::TrajectorySetpoint& wanted) const;
 
-  // telemetry.cpp: what it says
+  // telemetry.cpp: what it publishes
   void report();
   bool due(Due& what);
   std::uint64_t stamp_us() const { return std::uint64_t(now_ns_ - boot_ns_) / 1000; }

@@ -152,7 +152,7 @@ void describe(Self& s, Visitor&& visit) {
   visit("preset", s.preset, "",
         "sets pattern, ranges and noise as this model has them; what is given beside it prevails",
         Anything{});
-  // A visitor that writes has set the preset; those that follow see what it says.
+  // A visitor that writes has set the preset; the parameters below see its values.
   if constexpr (!std::is_const_v<Self>) {
     if (s.preset != before) apply_preset(s.preset, s);
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <span>
 
@@ -11,6 +12,7 @@ struct Ray {
   Vec3 origin = Vec3::Zero();      // [m] frame of the world
   Vec3 direction = Vec3::UnitX();  // of length 1
   double range_m = 0.0;            // nothing beyond is looked for
+  std::int64_t time_ns = 0;        // when it is fired; worlds that stand still need no time
 };
 
 /// Where a ray meets the first surface.
@@ -21,7 +23,7 @@ struct Hit {
   bool any() const { return range_m < std::numeric_limits<double>::infinity(); }
 };
 
-/// The truth that sensors see: voxels, solids, a physics engine's model.
+/// The truth that sensors see: voxels, solids, a physics engine's model, things that move.
 class World {
  public:
   virtual ~World() = default;

@@ -18,8 +18,8 @@ class LifeSign {
   LifeSign(const LifeSign&) = delete;
   LifeSign& operator=(const LifeSign&) = delete;
 
-  /// Before anything is sent that this process' wall clock dates: if the clock was set, whoever
-  /// hears must know first.
+  /// Before anything is sent that this process' wall clock dates: if the clock was set,
+  /// receivers must know first.
   void before_commit();
 
  private:

@@ -99,8 +99,9 @@ class Tracker {
     return step(state, now_ns, now_ns);
   }
 
-  /// The newest map: what is left of what is flown and of what waits is checked against it. What
-  /// is blocked is braked for (trajectory_blocked): along its path, else on another way that is
+  /// The newest map: what is left of what is flown and of what waits is checked against it. The
+  /// stop part of what is blocked begins sooner, if it has one and a stop fits: then nothing is
+  /// lost. Else it is braked for (trajectory_blocked): along its path, else on another way that is
   /// free, else on the one that stays free for the longest time. A landing whose way down it shows
   /// blocked stops and holds where it is.
   /// @pre grid->check() ok
@@ -174,6 +175,7 @@ class Tracker {
   void check_landing(std::int64_t now_ns);
   void check_flight(std::int64_t now_ns);
   void drop_queued(std::size_t first, const Error& why, std::uint64_t newest);
+  bool stop_sooner(Reference& flown, std::int64_t from_ns);
   void stop_before(const Obstruction& found, std::uint64_t newest, std::int64_t now_ns);
   bool stop_on_free_way(std::int64_t now_ns);
   std::uint64_t followed_id() const;

@@ -1,10 +1,11 @@
-#include "recorded_flight.hpp"
+#include "goshawk/viewer/recorded_flight.hpp"
 
 #include "goshawk/conversions/geometry.hpp"
 #include "goshawk/conversions/grid.hpp"
 #include "goshawk/conversions/plan.hpp"
 #include "goshawk/conversions/vehicle.hpp"
 #include "goshawk/core/grid_update.hpp"
+#include "goshawk/flight_report/movers.hpp"
 #include "goshawk/map_server/voxel_map.hpp"
 #include "goshawk/runtime/message_type.hpp"
 #include "octomap_msgs.h"
@@ -13,8 +14,12 @@ namespace goshawk::viewer {
 namespace {
 
 namespace msg = goshawk_msgs::msg;
+using flight_report::MoversMoment;
+using flight_report::PredictionsMoment;
 
 constexpr std::size_t kMostComplaints = 20;
+constexpr double kLeastMoverStep_s = 0.1;  // between moments of what moves
+constexpr std::size_t kMostMoverMoments = 20'000;
 constexpr std::int64_t kMostVoxels = 300'000'000;  // that a page can draw
 
 /// @return invalid_input if the bytes do not decode
@@ -36,6 +41,25 @@ double seconds(std::int64_t ns) {
   return double(ns) * 1e-9;
 }
 
+/// [s] since 1970
+template <typename Message>
+double stamp_s(const Message& m) {
+  return seconds(conversions::to_ns(m.header().stamp()));
+}
+
+Quaternion rotation_of(const geometry_msgs::msg::Quaternion& q) {
+  return {q.w(), q.x(), q.y(), q.z()};
+}
+
+/// Appends a moment that holds and is new enough. @param check of the moment alone
+template <typename Moment, typename Check>
+Status keep(std::vector<Moment>& moments, Moment moment, const Check& check) {
+  if (auto good = check(moment); !good) return good;
+  const bool newer = moments.empty() || moment.t_s - moments.back().t_s >= kLeastMoverStep_s;
+  if (newer && moments.size() < kMostMoverMoments) moments.push_back(std::move(moment));
+  return success();
+}
+
 }  // namespace
 
 std::map<std::uint16_t, RecordedFlight::Take> RecordedFlight::choose(
@@ -52,7 +76,10 @@ std::map<std::uint16_t, RecordedFlight::Take> RecordedFlight::choose(
       {"path", "goshawk_msgs/msg/Path", &RecordedFlight::take_path},
       {"octomap_binary", "octomap_msgs/msg/Octomap", &RecordedFlight::take_octomap},
       {"map/voxels", "goshawk_msgs/msg/VoxelGrid", &RecordedFlight::take_grown},
-      {"map/voxels/updates", "goshawk_msgs/msg/VoxelGridUpdate", &RecordedFlight::take_update}};
+      {"map/voxels/updates", "goshawk_msgs/msg/VoxelGridUpdate", &RecordedFlight::take_update},
+      {"navigator_state", "goshawk_msgs/msg/NavigatorState", &RecordedFlight::take_navigator},
+      {"movers", "goshawk_msgs/msg/MovingBoxes", &RecordedFlight::take_movers},
+      {"obstacles", "goshawk_msgs/msg/PredictedObstacles", &RecordedFlight::take_predictions}};
   std::map<std::uint16_t, Take> chosen;
   for (const auto& wanted : kWanted) {
     const recording::Channel* first = nullptr;
@@ -145,7 +172,7 @@ Status RecordedFlight::take_grown(const Bytes& bytes) {
   if (!m) return m.error();
   auto grid = conversions::from_msg(*m);
   if (!grid) return grid.error();
-  grown_ = *std::move(grid);
+  maps_.take(stamp_s(*m), *std::move(grid));
   return success();
 }
 
@@ -154,16 +181,72 @@ Status RecordedFlight::take_update(const Bytes& bytes) {
   if (!m) return m.error();
   const auto update = conversions::from_msg(*m);
   if (!update) return update.error();
-  // An update that does not follow is dropped, as stages do: the whole map comes soon after.
-  if (grown_ && grown_->version == update->from_version) return apply(*grown_, *update);
+  return maps_.take(stamp_s(*m), *update);
+}
+
+Status RecordedFlight::take_navigator(const Bytes& bytes) {
+  const auto m = decoded<msg::NavigatorState>(bytes);
+  if (!m) return m.error();
+  if (m->state() == msg::NavigatorState_Constants::STATE_IDLE) return success();
+  const Vec3 goal = conversions::from_msg(m->goal());
+  if (!goal.allFinite()) return fail(ErrorCode::invalid_input, "a goal is not finite");
+  if (goals_.empty() || goals_.back() != goal) goals_.push_back(goal);
   return success();
+}
+
+Status RecordedFlight::take_movers(const Bytes& bytes) {
+  const auto m = decoded<msg::MovingBoxes>(bytes);
+  if (!m) return m.error();
+  MoversMoment moment{stamp_s(*m), {}};
+  for (const auto& box : m->boxes()) {
+    moment.boxes.push_back({.id = box.id(),
+                            .kind = box.kind(),
+                            .center_map = conversions::from_msg(box.pose().position()),
+                            .q_map_box = rotation_of(box.pose().orientation()),
+                            .half_extents_m = conversions::from_msg(box.half_extents())});
+  }
+  return keep(movers_, std::move(moment),
+              [](const auto& one) { return flight_report::check_movers({one}, {}); });
+}
+
+Status RecordedFlight::take_predictions(const Bytes& bytes) {
+  const auto m = decoded<msg::PredictedObstacles>(bytes);
+  if (!m) return m.error();
+  PredictionsMoment moment{stamp_s(*m), {}};
+  for (const auto& obstacle : m->obstacles()) {
+    flight_report::PredictedBox box{
+        .id = obstacle.id(),
+        .q_map_box = rotation_of(obstacle.orientation()),
+        .half_extents_m = conversions::from_msg(obstacle.half_extents()),
+        .track = {},
+        .error_m = obstacle.error(),
+        .error_rate_m_s = obstacle.error_rate(),
+        .valid_until_s = obstacle.valid_until()};
+    for (const auto& piece : obstacle.track()) {
+      box.track.push_back({piece.duration(), conversions::from_msg(piece.control_points())});
+    }
+    moment.boxes.push_back(std::move(box));
+  }
+  return keep(predictions_, std::move(moment),
+              [](const auto& one) { return flight_report::check_movers({}, {one}); });
+}
+
+void RecordedFlight::add_world(flight_report::Flight& flight, std::int64_t origin_ns) const {
+  const double origin_s = seconds(origin_ns);
+  flight.maps = maps_.moments();
+  flight.movers = movers_;
+  flight.predictions = predictions_;
+  for (auto& moment : flight.maps) moment.t_s -= origin_s;
+  for (auto& moment : flight.movers) moment.t_s -= origin_s;
+  for (auto& moment : flight.predictions) moment.t_s -= origin_s;
 }
 
 flight_report::Flight RecordedFlight::flight(const std::string& title) const {
   flight_report::Flight flight;
   flight.title = title;
   flight.obstacles = obstacles_ ? &*obstacles_ : nullptr;
-  flight.grown = grown_ ? &*grown_ : nullptr;
+  flight.grown = maps_.newest() ? &*maps_.newest() : nullptr;
+  flight.goals_map = goals_;
   std::int64_t origin_ns = 0;
   if (!committed_.empty()) origin_ns = committed_.front().start_time_ns();
   if (!flown_.empty()) origin_ns = flown_.front().stamp_ns;
@@ -180,6 +263,7 @@ flight_report::Flight RecordedFlight::flight(const std::string& title) const {
     flight.flown.push_back(sample);
     flight.flown.back().t_s = seconds(stamp_ns - origin_ns);
   }
+  add_world(flight, origin_ns);
   return flight;
 }
 

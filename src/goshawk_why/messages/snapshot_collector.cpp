@@ -1,21 +1,24 @@
-#include "flight/snapshot_collector.hpp"
+#include "goshawk/why_messages/snapshot_collector.hpp"
 
 #include <algorithm>
 #include <functional>
 
-#include "flight/pilot.hpp"
 #include "goshawk/conversions/grid.hpp"
 #include "goshawk/conversions/plan.hpp"
 #include "goshawk/conversions/status.hpp"
 #include "goshawk/conversions/vehicle.hpp"
 #include "goshawk/core/grid_update.hpp"
 
-namespace goshawk::cli {
+namespace goshawk::why {
 namespace {
 
 namespace msg = goshawk_msgs::msg;
 using runtime::Qos;
-using why::Snapshot;
+
+/// @param space "/uav1", "/", or nothing for a name that a node completes
+std::string topic_in(const std::string& space, const std::string& name) {
+  return space.empty() ? name : space == "/" ? "/" + name : space + "/" + name;
+}
 
 double seconds_between(std::int64_t from_ns, std::int64_t to_ns) {
   return double(to_ns - from_ns) * 1e-9;
@@ -167,4 +170,4 @@ Snapshot SnapshotCollector::snapshot(std::int64_t now_ns) const {
   return s;
 }
 
-}  // namespace goshawk::cli
+}  // namespace goshawk::why

@@ -11,13 +11,14 @@
 #include "goshawk_msgs.h"
 #include "nav_msgs.h"
 
-namespace goshawk::cli {
+namespace goshawk::why {
 
 /// Makes snapshots of a flight from what its topics say, live or recorded. Times are [ns] of the
 /// wall clock, when a message was heard.
 class SnapshotCollector {
  public:
-  /// From now on, in the node's thread. @param space of the vehicle: "/uav1", or "/"
+  /// From now on, in the node's thread.
+  /// @param space of the vehicle: "/uav1", or "/"; empty: the node's own, with its remappings
   void listen(runtime::Node& node, const std::string& space);
   /// All that was recorded of the vehicle until then. @param until_ns on the recording's clock
   /// @return io_failed
@@ -25,7 +26,7 @@ class SnapshotCollector {
 
   /// Whether navigator, vehicle, tracker and map were heard.
   bool is_complete() const { return navigator_ && vehicle_ && tracker_ && map_.value; }
-  why::Snapshot snapshot(std::int64_t now_ns) const;
+  Snapshot snapshot(std::int64_t now_ns) const;
 
  private:
   template <typename Value>
@@ -51,14 +52,14 @@ class SnapshotCollector {
     std::int64_t stamp_ns = 0;
   };
 
-  std::optional<Heard<why::Snapshot::Vehicle>> vehicle_ = {};
-  std::optional<why::Snapshot::Status> status_ = {};
+  std::optional<Heard<Snapshot::Vehicle>> vehicle_ = {};
+  std::optional<Snapshot::Status> status_ = {};
   std::optional<Heard<goshawk_msgs::msg::NavigatorState>> navigator_ = {};
-  std::optional<Heard<why::Snapshot::Tracker>> tracker_ = {};
-  std::optional<why::Snapshot::Mission> mission_ = {};
-  std::map<std::string, why::Snapshot::Report> reports_ = {};  // the newest, by node
+  std::optional<Heard<Snapshot::Tracker>> tracker_ = {};
+  std::optional<Snapshot::Mission> mission_ = {};
+  std::map<std::string, Snapshot::Report> reports_ = {};  // the newest, by node
   std::optional<CommittedTrajectory> committed_ = {};
   Map map_;
 };
 
-}  // namespace goshawk::cli
+}  // namespace goshawk::why
