@@ -12,7 +12,7 @@ import sys
 SCRIPTS = ["geometry.js", "theme.js", "world.js", "map_meshes.js", "map_layers.js", "parts.js",
            "vehicle.js", "sight.js", "scene.js", "plots.js", "panel.js", "flight.js", "cdr.js",
            "octomap.js", "messages.js", "foxglove.js", "glance.js", "saved.js",
-           "live.js", "start.js"]
+           "live.js", "aim.js", "start.js"]
 MESSAGES = ["geometry.js", "theme.js", "world.js", "parts.js", "messages.js", "octomap.js",
             "sight.js"]
 THREE = ["three.min.js", "examples/js/controls/OrbitControls.js",
