@@ -15,7 +15,7 @@ from stack import spawned
 STAGE_KEYS = {"name", "implementation", "code", "compute_us", "wire_us", "counters"}
 LEG_KEYS = {"goal", "arrived", "code", "message", "flight_time_s", "request_id", "commits", "stages",
             "path", "corridor", "trajectory", "tracking"}
-KEYS = {"ok", "code", "message", "verdict", "legs", "tracking", "clearance", "folder"}
+KEYS = {"ok", "code", "message", "verdict", "legs", "tracking", "clearance", "folder", "why"}
 FILES = {"flight.json", "flown.csv", "trajectory.csv", "corridor.ply", "world.bt", "top.png",
          "side.png", "time.png"}
 V_MAX_M_S = 2.0
