@@ -40,6 +40,10 @@ STAGES = {
                                "vehicle_status"], "writes": []},
     "sensors": {"reads": ["odom", "odom_true"],
                 "writes": ["points", "depth/image_rect_raw", "depth/camera_info", "/tf_static"]},
+    "movers": {"reads": [], "writes": ["movers"]},
+    # cloud_in is remapped as map_server's.
+    "obstacle_tracker": {"reads": ["cloud_in", "points", "odom", "/tf", "/tf_static", "movers"],
+                         "writes": ["obstacles", "tracks"]},
     "visualizer": {"reads": ["octomap_binary", "path", "committed_trajectory", "odom"],
                    "writes": ["view/obstacles", "view/plan", "view/flown", "path_line", "markers"]},
 }

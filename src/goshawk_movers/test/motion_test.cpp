@@ -98,6 +98,8 @@ TEST(Walk, BadParametersAreNamed) {
   EXPECT_THAT(said(p), HasSubstr("fewer than two points"));
   p = corner(), p.points_map[1] = p.points_map[0];
   EXPECT_THAT(said(p), HasSubstr("point 2 is the same"));
+  p = corner(), p.points_map[1] = p.points_map[0] + Vec3(1e-200, 0, 0);
+  EXPECT_THAT(said(p), HasSubstr("point 2 is the same"));
   p = corner(), p.points_map[1].x() = std::nan("");
   EXPECT_THAT(said(p), HasSubstr("1e6 m"));
   p = corner(), p.pauses_s.pop_back();

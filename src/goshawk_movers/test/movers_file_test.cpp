@@ -115,6 +115,10 @@ TEST(MoversText, MotionsThatCannotBeAreRefused) {
               HasSubstr("period_s is below"));
   EXPECT_THAT(said(head + "slide: {center: [0, 0, 0], reach: [1e5, 0, 0], period_s: 0.1}\n"),
               HasSubstr("1000 m/s"));
+  EXPECT_THAT(said(head + "slide: {center: [1e7, 0, 0], reach: [1, 0, 0], period_s: 1}\n"),
+              HasSubstr("beyond 1e6 m"));
+  EXPECT_THAT(said(head + "still: {position: [0, 0, 0]}\n    start_s: 1e300\n"),
+              HasSubstr("start_s is beyond"));
   EXPECT_THAT(said(head + "trefoil: {center: [0, 0, 0], scale: [1, -1, 1]}\n"),
               HasSubstr("scale is not above 0"));
 }

@@ -60,7 +60,7 @@ class Px4StandInComponent : public Component {
         reporter_(node, StageRole::other, "px4 stand-in"),
         wire_(node, reporter_, config_.release),
         autopilot_(make_autopilot()),
-        truth_(node.advertise<nav_msgs::msg::Odometry>("odom_true", Qos::best_effort())) {
+        truth_(node.advertise<nav_msgs::msg::Odometry>("odom_true", Qos::state())) {
     hear<px4::VehicleCommand>();
     hear<px4::OffboardControlMode>();
     hear<px4::TrajectorySetpoint>();

@@ -5,6 +5,11 @@
 //   ping COUNT BYTES        round trips; prints half of them as p50 and p99 in us
 //   latch BYTES             latches a message and stays; prints the growth of its memory
 //   fetch                   waits for the latched message; prints the milliseconds from start
+//   hear                    reads a state topic, reliable, until it is ended
+//   state COUNT QUALITY [PID] publishes COUNT states of 1 KB at 500 Hz, reliable or best_effort;
+//   once
+//                           `hear`, of that process id, is matched, it is stopped meanwhile; prints
+//                           how long the calls took in us
 
 #include <signal.h>
 #include <unistd.h>
@@ -16,6 +21,7 @@
 #include <fstream>
 #include <set>
 #include <string>
+#include <thread>
 
 #include "goshawk/runtime/node.hpp"
 #include "octomap_msgs.h"
@@ -111,6 +117,38 @@ int fetch(Node& node) {
   return got > 0 ? 0 : 1;
 }
 
+int hear(Node& node) {
+  node.subscribe<Octomap>("measure/state", Qos::state(), [](const Octomap&, const auto&) {});
+  node.spin();
+  return 0;
+}
+
+int state(Node& node, int count, bool reliable, pid_t silent) {
+  constexpr auto kPeriod = std::chrono::milliseconds(2);
+  const auto publisher =
+      node.advertise<Octomap>("measure/state", reliable ? Qos::state() : Qos::best_effort());
+  if (silent > 0) {
+    while (publisher.matched() == 0) node.spin_some(0.05);
+    if (kill(silent, SIGSTOP) != 0) return 1;
+  }
+  Octomap message;
+  message.data().resize(1024);
+  std::vector<double> us;
+  int failed = 0;
+  auto next = Steady::now();
+  for (int i = 0; i < count; ++i) {
+    std::this_thread::sleep_until(next += kPeriod);
+    const auto begin = Steady::now();
+    failed += publisher.publish(message) ? 0 : 1;
+    us.push_back(ms_since(begin) * 1e3);
+  }
+  if (silent > 0) kill(silent, SIGCONT);
+  std::ranges::sort(us);
+  std::printf("p50 %.0f us, p99 %.0f us, longest %.0f us, %d failed, %d matched\n",
+              us[us.size() / 2], us[us.size() * 99 / 100], us.back(), failed, publisher.matched());
+  return 0;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -130,6 +168,12 @@ int main(int argc, char** argv) {
   }
   if (a.size() == 2 && a[0] == "latch") return latch(node, std::size_t(std::atol(a[1].c_str())));
   if (a.size() == 1 && a[0] == "fetch") return fetch(node);
-  std::fprintf(stderr, "goshawk_runtime_peer join|echo|ping|latch|fetch; see its source\n");
+  if (a.size() == 1 && a[0] == "hear") return hear(node);
+  if ((a.size() == 3 || a.size() == 4) && a[0] == "state" && std::atoi(a[1].c_str()) > 0) {
+    return state(node, std::atoi(a[1].c_str()), a[2] == "reliable",
+                 a.size() == 4 ? std::atoi(a[3].c_str()) : 0);
+  }
+  std::fprintf(stderr,
+               "goshawk_runtime_peer join|echo|ping|latch|fetch|hear|state; see its source\n");
   return 2;
 }

@@ -22,4 +22,11 @@ void apply(const Qos& qos, EndpointQos& out) {
       rtps::MemoryManagementPolicy_t::DYNAMIC_REUSABLE_MEMORY_MODE;
 }
 
+/// How a writer sends: in the caller's thread, and what a late reader missed at once.
+inline void apply_writer_times(dds::DataWriterQos& out) {
+  out.publish_mode().kind = dds::SYNCHRONOUS_PUBLISH_MODE;
+  // Fast DDS' 3 s would let a late reader of a latched topic wait that long for what it missed.
+  out.reliable_writer_qos().times.heartbeatPeriod = {0, 100'000'000};
+}
+
 }  // namespace goshawk::runtime

@@ -15,8 +15,10 @@
 #include <set>
 
 #include "any_type.hpp"
+#include "apply_qos.hpp"
 #include "context_impl.hpp"
 #include "goshawk/runtime/version.hpp"
+#include "message_type_impl.hpp"
 #include "writer_guard.hpp"
 
 namespace goshawk::runtime {
@@ -26,6 +28,7 @@ namespace {
 // than any launch file here starts, few enough that the knocking costs nothing.
 constexpr unsigned kMaxParticipants = 60;
 constexpr int kLastDomain = 232;             // the ports of more would be above 65535
+constexpr int kMostRosParticipants = 1000;   // whose messages wait for the thread that reads them
 constexpr unsigned kSocketBuffer = 4 << 20;  // [byte] asked for; the kernel may give less
 
 std::vector<std::string> split(const std::string& list) {
@@ -112,6 +115,17 @@ dds::DomainParticipantQos profile_qos() {
   return factory->get_default_participant_qos();
 }
 
+Result<RosGraphLayout> ros_graph_layout(std::string_view text) {
+  if (text == "auto") return RosGraphLayout::automatic;
+  if (text == "humble") return RosGraphLayout::humble;
+  if (text == "iron") return RosGraphLayout::iron;
+  if (text == "off") return RosGraphLayout::off;
+  return fail(ErrorCode::invalid_parameter,
+              fmt::format("GOSHAWK_ROS_GRAPH is '{}': it must be auto, humble, iron (for Iron and "
+                          "later) or off",
+                          text));
+}
+
 bool has_property(const dds::DomainParticipantQos& qos, const char* name) {
   return rtps::PropertyPolicyHelper::find_property(qos.properties(), name) != nullptr;
 }
@@ -161,6 +175,11 @@ Result<ContextOptions> ContextOptions::from_environment() {
                                                     "': it must be a number from 0 to 232");
     }
   }
+  if (const char* text = std::getenv("GOSHAWK_ROS_GRAPH"); text != nullptr && *text != '\0') {
+    const auto layout = ros_graph_layout(text);
+    if (!layout) return layout.error();
+    options.ros_graph = *layout;
+  }
   return options;
 }
 
@@ -172,6 +191,7 @@ Result<std::unique_ptr<Context>> Context::create(const ContextOptions& options) 
   if (auto status = check_interfaces(options.interfaces); !status) return status.error();
   auto impl = std::make_unique<Impl>();
   impl->domain = options.domain;
+  impl->listener.ros_graph = &impl->ros_graph;
   const auto profile = profile_qos();
   impl->has_permissions = has_property(profile, "dds.sec.access.plugin");
   if (has_property(profile, "dds.sec.auth.plugin")) {
@@ -195,6 +215,7 @@ Result<std::unique_ptr<Context>> Context::create(const ContextOptions& options) 
   }
   impl->publisher = impl->participant->create_publisher(dds::PUBLISHER_QOS_DEFAULT);
   impl->subscriber = impl->participant->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT);
+  if (auto status = impl->open_ros_graph(options); !status) return status.error();
   return std::unique_ptr<Context>(new Context(std::move(impl)));
 }
 
@@ -209,6 +230,20 @@ std::vector<ParticipantInfo> Context::participants() const {
 std::vector<EndpointInfo> Context::endpoints() const {
   return impl_->listener.endpoints();
 }
+Status Context::watch_ros_nodes() {
+  if (impl_->has_permissions) return success();
+  const auto type = raw_message_type(kRosDiscoveryType);
+  auto* topic = impl_->wire_topic(kRosDiscoveryTopic, type.impl().support);
+  dds::DataReaderQos qos = dds::DATAREADER_QOS_DEFAULT;
+  apply(Qos::latched(kMostRosParticipants), qos);
+  auto* reader = topic == nullptr
+                     ? nullptr
+                     : impl_->subscriber->create_datareader(topic, qos, &impl_->ros_nodes,
+                                                            dds::StatusMask::data_available());
+  if (reader != nullptr) return success();
+  return fail(ErrorCode::io_failed,
+              fmt::format("cannot read {}: {}", kRosDiscoveryTopic, impl_->why_no_endpoint()));
+}
 std::uint64_t Context::refused_datagrams() const {
   return impl_->refusals->count();
 }
@@ -218,6 +253,7 @@ std::string Context::last_refusal() const {
 
 Context::Impl::~Impl() {
   if (participant == nullptr) return;
+  ros_graph.close();
   participant->delete_contained_entities();
   dds::DomainParticipantFactory::get_instance()->delete_participant(participant);
 }
@@ -228,9 +264,30 @@ std::string Context::Impl::why_no_endpoint() const {
                          : "another type uses this topic in this process, or its profile is wrong";
 }
 
+Status Context::Impl::open_ros_graph(const ContextOptions& options) {
+  // ROS 2's nodes have no certificates of Goshawk's authority: with permissions nobody would read
+  // it.
+  if (options.ros_graph == RosGraphLayout::off || has_permissions) return success();
+  const auto type = raw_message_type(kRosDiscoveryType);
+  auto* topic = wire_topic(kRosDiscoveryTopic, type.impl().support);
+  dds::DataWriterQos qos = dds::DATAWRITER_QOS_DEFAULT;
+  apply(Qos::latched(), qos);
+  apply_writer_times(qos);
+  auto* writer = topic == nullptr ? nullptr : publisher->create_datawriter(topic, qos);
+  if (writer == nullptr) {
+    return fail(ErrorCode::io_failed,
+                fmt::format("cannot write {}: {}", kRosDiscoveryTopic, why_no_endpoint()));
+  }
+  ros_graph.open(*participant, writer, options.ros_graph, options.node_names);
+  return success();
+}
+
 dds::Topic* Context::Impl::topic(const std::string& ros_name, const dds::TypeSupport& type) {
+  return wire_topic(wire_topic_name(ros_name), type);
+}
+
+dds::Topic* Context::Impl::wire_topic(const std::string& name, const dds::TypeSupport& type) {
   const std::lock_guard lock(topics_mutex_);
-  const std::string name = wire_topic_name(ros_name);
   if (auto* found = participant->lookup_topicdescription(name)) {
     if (found->get_type_name() != type.get_type_name()) return nullptr;
     return static_cast<dds::Topic*>(found);

@@ -1,7 +1,14 @@
+#include <fastrtps/types/TypesBase.h>
+#include <fastdds/dds/subscriber/DataReader.hpp>
+#include <fastdds/dds/subscriber/SampleInfo.hpp>
+
 #include <algorithm>
+#include <span>
 #include <sstream>
 
+#include "any_type.hpp"
 #include "context_impl.hpp"
+#include "message_type_impl.hpp"
 #include "writer_guard.hpp"
 
 namespace goshawk::runtime {
@@ -74,6 +81,7 @@ void DiscoveryListener::on_participant_discovery(dds::DomainParticipant*,
       info.status == rtps::ParticipantDiscoveryInfo::DROPPED_PARTICIPANT) {
     participants_.erase(key);
     silent_since_.erase(key);
+    ros_nodes_.erase(key);
     if (info.status == rtps::ParticipantDiscoveryInfo::DROPPED_PARTICIPANT && !took_leave) {
       if (silent_since_.size() >= kMostSilent) silent_since_.erase(silent_since_.begin());
       silent_since_[key] = std::chrono::steady_clock::now();
@@ -83,8 +91,45 @@ void DiscoveryListener::on_participant_discovery(dds::DomainParticipant*,
   }
   silent_since_.erase(key);
   const std::string user_data(info.info.m_userData.begin(), info.info.m_userData.end());
-  participants_[key] = {key, info.info.m_participantName.to_string(), nodes_in(user_data),
-                        version_in(user_data)};
+  ParticipantInfo& found = participants_[key];
+  found = {key, info.info.m_participantName.to_string(), nodes_in(user_data),
+           version_in(user_data)};
+  found.is_ros = found.version.empty() && user_data.find("enclave=") != std::string::npos;
+}
+
+template <typename Info>
+bool DiscoveryListener::is_ros_discovery(const Info& info) const {
+  if (text(info.topicName()) != kRosDiscoveryTopic) return false;
+  const auto& user_data = info.m_qos.m_userData;
+  const std::string_view kHash = "typehash=";  // Iron and later say it of every endpoint
+  if (!std::ranges::search(user_data, kHash).empty()) ros_graph->found_iron();
+  return true;
+}
+
+void DiscoveryListener::tell_ros_nodes(const rtps::GuidPrefix_t& participant,
+                                       std::vector<std::string> names) {
+  std::erase_if(names, [](const auto& name) { return name[name.rfind('/') + 1] == '_'; });
+  const std::string key = text(participant);
+  const std::lock_guard lock(mutex_);
+  if (participants_.contains(key)) ros_nodes_[key] = std::move(names);
+}
+
+void RosNodesListener::on_data_available(dds::DataReader* reader) {
+  const auto type = raw_message_type(kRosDiscoveryType);
+  std::vector<unsigned char> bytes;
+  dds::SampleInfo info;
+  Sample sample{type.impl().support.get(), &bytes};
+  while (reader->take_next_sample(&sample, &info) ==
+         eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK) {
+    if (!info.valid_data) continue;
+    auto told = decode_node_names(bytes);
+    const auto& writer = info.sample_identity.writer_guid();
+    // Nobody is heard about others.
+    if (!told ||
+        !std::ranges::equal(writer.guidPrefix.value, std::span(told->participant).first<12>()))
+      continue;
+    told_.tell_ros_nodes(writer.guidPrefix, std::move(told->names));
+  }
 }
 
 // Fast DDS sends nothing to a participant before this has returned.
@@ -109,7 +154,7 @@ void DiscoveryListener::onParticipantAuthentication(dds::DomainParticipant*,
 
 void DiscoveryListener::on_publisher_discovery(dds::DomainParticipant* self,
                                                rtps::WriterDiscoveryInfo&& info) {
-  if (info.info.guid().guidPrefix == self->guid().guidPrefix) return;
+  if (info.info.guid().guidPrefix == self->guid().guidPrefix || is_ros_discovery(info.info)) return;
   const std::lock_guard lock(mutex_);
   const std::string key = text(info.info.guid());
   if (info.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER) {
@@ -121,7 +166,7 @@ void DiscoveryListener::on_publisher_discovery(dds::DomainParticipant* self,
 
 void DiscoveryListener::on_subscriber_discovery(dds::DomainParticipant* self,
                                                 rtps::ReaderDiscoveryInfo&& info) {
-  if (info.info.guid().guidPrefix == self->guid().guidPrefix) return;
+  if (info.info.guid().guidPrefix == self->guid().guidPrefix || is_ros_discovery(info.info)) return;
   const std::lock_guard lock(mutex_);
   const std::string key = text(info.info.guid());
   if (info.status == rtps::ReaderDiscoveryInfo::REMOVED_READER) {
@@ -163,7 +208,11 @@ std::string DiscoveryListener::describe(const Participant& participant) const {
 std::vector<ParticipantInfo> DiscoveryListener::participants() const {
   const std::lock_guard lock(mutex_);
   std::vector<ParticipantInfo> list;
-  for (const auto& [key, info] : participants_) list.push_back(info);
+  for (const auto& [key, info] : participants_) {
+    list.push_back(info);
+    const auto told = ros_nodes_.find(key);
+    if (info.is_ros && told != ros_nodes_.end()) list.back().nodes = told->second;
+  }
   return list;
 }
 

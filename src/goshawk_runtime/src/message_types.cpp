@@ -3,6 +3,7 @@
 #include "message_type_impl.hpp"
 #include "nav_msgsPubSubTypes.h"
 #include "octomap_msgsPubSubTypes.h"
+#include "rmw_dds_commonPubSubTypes.h"
 #include "rosgraph_msgsPubSubTypes.h"
 #include "safe_type.hpp"
 #include "sensor_msgsPubSubTypes.h"
@@ -51,6 +52,7 @@ GOSHAWK_MESSAGE(octomap_msgs, Octomap)
 GOSHAWK_MESSAGE(tf2_msgs, TFMessage)
 GOSHAWK_MESSAGE(trajectory_msgs, MultiDOFJointTrajectory)
 GOSHAWK_MESSAGE(rosgraph_msgs, Clock)
+GOSHAWK_MESSAGE(rmw_dds_common, ParticipantEntitiesInfo)
 GOSHAWK_MESSAGE(goshawk_msgs, VoxelGrid)
 GOSHAWK_MESSAGE(goshawk_msgs, VoxelGridUpdate)
 GOSHAWK_MESSAGE(goshawk_msgs, PlanRequest)

@@ -41,10 +41,15 @@ namespace detail {
 
 class Writer {
  public:
-  Writer(dds::Publisher* publisher, dds::DataWriter* writer, dds::TypeSupport type,
-         std::string topic)
-      : publisher_(publisher), writer_(writer), type_(std::move(type)), topic_(std::move(topic)) {}
-  ~Writer() { publisher_->delete_datawriter(writer_); }
+  Writer(Context::Impl& context, const std::string& node, dds::DataWriter* writer,
+         dds::TypeSupport type, std::string topic)
+      : context_(context), writer_(writer), type_(std::move(type)), topic_(std::move(topic)) {
+    context_.ros_graph.add_writer(node, writer_->guid());
+  }
+  ~Writer() {
+    context_.ros_graph.remove(writer_->guid());
+    context_.publisher->delete_datawriter(writer_);
+  }
   Writer(const Writer&) = delete;
   Writer& operator=(const Writer&) = delete;
 
@@ -67,7 +72,7 @@ class Writer {
   }
 
  private:
-  dds::Publisher* publisher_;
+  Context::Impl& context_;
   dds::DataWriter* writer_;
   dds::TypeSupport type_;
   std::string topic_;
@@ -152,6 +157,7 @@ Node::Node(Context& context, std::string name, RosArgs args, std::shared_ptr<con
   log_->set_level(spdlog::level::from_str(args_.log_level));
   log_->flush_on(spdlog::level::info);
   impl_->on_second_writer = log_second_writers(log_);
+  impl_->context.ros_graph.enter(full_name());
 }
 
 Node::Node(const Node& other, std::unique_ptr<Impl> impl)
@@ -161,9 +167,12 @@ Node::Node(const Node& other, std::unique_ptr<Impl> impl)
       log_(other.log_),
       impl_(std::move(impl)) {
   impl_->on_second_writer = log_second_writers(log_);
+  impl_->context.ros_graph.enter(full_name());
 }
 
-Node::~Node() = default;
+Node::~Node() {
+  impl_->context.ros_graph.leave(full_name());
+}
 
 std::unique_ptr<Node> Node::beside() {
   if (impl_->time.takes_turns) throw std::logic_error("Node::beside() in lock step");
@@ -204,9 +213,7 @@ std::shared_ptr<detail::Writer> Node::make_writer(std::string_view topic, const 
   if (publisher->get_datawriter_qos_from_profile(name, writer_qos) != ReturnCode_t::RETCODE_OK) {
     writer_qos = dds::DATAWRITER_QOS_DEFAULT;
     apply(qos, writer_qos);
-    writer_qos.publish_mode().kind = dds::SYNCHRONOUS_PUBLISH_MODE;
-    // Fast DDS' 3 s would let a late reader of a latched topic wait that long for what it missed.
-    writer_qos.reliable_writer_qos().times.heartbeatPeriod = {0, 100'000'000};
+    apply_writer_times(writer_qos);
   }
   auto* writer =
       dds_topic == nullptr ? nullptr : publisher->create_datawriter(dds_topic, writer_qos);
@@ -215,7 +222,8 @@ std::shared_ptr<detail::Writer> Node::make_writer(std::string_view topic, const 
                                                       type.name() + ": " +
                                                       impl_->context.why_no_endpoint()));
   }
-  return std::make_shared<detail::Writer>(publisher, writer, type.impl().support, name);
+  return std::make_shared<detail::Writer>(impl_->context, full_name(), writer, type.impl().support,
+                                          name);
 }
 
 void Node::every(double period_s, std::function<void()> callback) {

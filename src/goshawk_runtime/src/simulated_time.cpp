@@ -60,7 +60,7 @@ void Node::Impl::require_one_port(const char* call) const {
 void Node::use_simulated_time() {
   if (impl_->time.on) return;
   impl_->time.on = true;
-  subscribe<rosgraph_msgs::msg::Clock>("/clock", Qos::reliable_last(),
+  subscribe<rosgraph_msgs::msg::Clock>("/clock", Qos::best_effort(),
                                        [this](const auto& m, const MessageInfo&) {
                                          impl_->set_time(conversions::to_ns(m.clock()));
                                          impl_->run_due_timers(*this);

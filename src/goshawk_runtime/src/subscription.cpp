@@ -85,6 +85,7 @@ std::unique_ptr<Subscription> Node::Impl::open(const Node& node, const std::stri
                                                       type.name() + ": " +
                                                       context.why_no_endpoint()));
   }
+  context.ros_graph.add_reader(node.full_name(), reader->guid());
   subscription->reader = reader;
   subscription->topic = name;
   subscription->type = type.impl().support;
@@ -95,6 +96,7 @@ std::unique_ptr<Subscription> Node::Impl::open(const Node& node, const std::stri
 }
 
 void Node::Impl::close(Subscription& s) {
+  context.ros_graph.remove(s.reader->guid());
   context.subscriber->delete_datareader(s.reader);
   s.type.delete_data(s.object);
   if (s.newest != nullptr) s.type.delete_data(s.newest);

@@ -42,6 +42,23 @@ TEST(ContextOptions, RefuseInterfacesThatAreSetButEmpty) {
   EXPECT_THAT(options.error().message, HasSubstr("GOSHAWK_INTERFACES is set but empty: unset it"));
 }
 
+TEST(ContextOptions, TakeTheLayoutOfTheRosGraphFromTheEnvironment) {
+  for (const auto& [text, layout] :
+       {std::pair{"", RosGraphLayout::automatic}, std::pair{"auto", RosGraphLayout::automatic},
+        std::pair{"humble", RosGraphLayout::humble}, std::pair{"iron", RosGraphLayout::iron},
+        std::pair{"off", RosGraphLayout::off}}) {
+    const Variable variable("GOSHAWK_ROS_GRAPH", text);
+    const auto options = ContextOptions::from_environment();
+    ASSERT_TRUE(options) << options.error().message;
+    EXPECT_EQ(options->ros_graph, layout) << text;
+  }
+  const Variable variable("GOSHAWK_ROS_GRAPH", "foxy");
+  const auto options = ContextOptions::from_environment();
+  ASSERT_EQ(options.code(), ErrorCode::invalid_parameter);
+  EXPECT_THAT(options.error().message,
+              HasSubstr("GOSHAWK_ROS_GRAPH is 'foxy': it must be auto, humble, iron"));
+}
+
 TEST(ContextOptions, RefuseADomainThatDoesNotExist) {
   for (const char* text : {"233", "-1", "7x", "x"}) {
     const Variable domain("ROS_DOMAIN_ID", text);

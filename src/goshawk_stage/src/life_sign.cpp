@@ -18,7 +18,7 @@ LifeSign::LifeSign(runtime::Node& node, StageReporter& reporter,
       reporter_(reporter),
       state_(state),
       alive_(node.advertise<goshawk_msgs::msg::NavigatorState>("navigator_alive",
-                                                               runtime::Qos::best_effort())) {
+                                                               runtime::Qos::state())) {
   node.every(kPeriod_s, [this] { send(); });
 }
 

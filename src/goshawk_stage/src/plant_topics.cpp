@@ -9,11 +9,11 @@ using runtime::Qos;
 
 PlantTopics::PlantTopics(runtime::Node& node, StageReporter& reporter, bool with_truth)
     : reporter_(reporter),
-      odometry_(node.advertise<Odometry>("odom", Qos::best_effort())),
+      odometry_(node.advertise<Odometry>("odom", Qos::state())),
       status_(
-          node.advertise<goshawk_msgs::msg::VehicleStatus>("vehicle_status", Qos::best_effort())),
-      tf_(node.advertise<tf2_msgs::msg::TFMessage>("/tf", Qos::best_effort(10))) {
-  if (with_truth) truth_ = node.advertise<Odometry>("odom_true", Qos::best_effort());
+          node.advertise<goshawk_msgs::msg::VehicleStatus>("vehicle_status", Qos::state())),
+      tf_(node.advertise<tf2_msgs::msg::TFMessage>("/tf", Qos::reliable_last(10))) {
+  if (with_truth) truth_ = node.advertise<Odometry>("odom_true", Qos::state());
 }
 
 void PlantTopics::publish_odometry(const RigidBodyState& state, std::int64_t stamp_ns) {

@@ -222,7 +222,7 @@ class Sandbox:
         self.env = {**os.environ, "ROS_DOMAIN_ID": str(self.domain.number), TOKEN: self.token,
                     "CYCLONEDDS_URI": CYCLONE, "PYTHONDONTWRITEBYTECODE": "1",
                     "XDG_STATE_HOME": str(self.folder / "state")}
-        for name in ("GOSHAWK_INTERFACES", "FASTRTPS_DEFAULT_PROFILES_FILE"):
+        for name in ("GOSHAWK_INTERFACES", "GOSHAWK_ROS_GRAPH", "FASTRTPS_DEFAULT_PROFILES_FILE"):
             self.env.pop(name, None)
         self.processes = []
 

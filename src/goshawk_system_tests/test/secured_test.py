@@ -17,7 +17,8 @@ import topic_rights  # noqa: E402
 PROFILE = "FASTRTPS_DEFAULT_PROFILES_FILE"
 LEASE_S = 3.0  # goshawk_runtime, context.cpp
 NODES = {**{name: name for name in topic_rights.STAGES
-            if name not in ("vehicle", "visualizer", "sensors", "guard")}, "simulator": "vehicle"}
+            if name not in ("vehicle", "visualizer", "sensors", "guard", "movers",
+                            "obstacle_tracker")}, "simulator": "vehicle"}
 # Opened only if they are needed: the map before a landing, the truth beside a sensor's error, the
 # clouds and images of Goshawk's own sensors.
 LATER = {"tracker": set(topic_rights.MAP), "vehicle": {*topic_rights.MAP, "odom_true"},

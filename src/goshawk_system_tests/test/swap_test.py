@@ -40,6 +40,18 @@ class CycloneObserver(StackTest):
         self.assertEqual(seen["polytopes"] + 1, seen["waypoints"])
         self.assertGreaterEqual(seen["pieces"], seen["polytopes"])
 
+    def test_the_nodes_are_told_as_ros_2_reads_them(self):
+        outcome = self.sandbox.call(harness.PREFIX / "bin" / "goshawk_cyclone_ros_graph",
+                                    "/navigator", "rt/plan_request", timeout_s=60)
+        self.assertEqual(outcome.status, 0, f"{outcome}\n{self.stack.launch.tails()}")
+        told = json.loads(outcome.out)
+        self.assertEqual(told["participant_entity"], "000001c1")
+        self.assertIn("rt/committed_trajectory", told["writes"])
+        self.assertIn("rt/trajectory", told["reads"])
+        # Each once, and nothing of the other stages.
+        self.assertEqual(len(set(told["writes"])), len(told["writes"]), told)
+        self.assertNotIn("rt/path", told["writes"] + told["reads"])
+
     def test_a_wrong_call_of_it_has_status_2(self):
         self.assertEqual(self.observe("1").status, 2)
 

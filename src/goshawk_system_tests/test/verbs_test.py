@@ -10,7 +10,7 @@ ALL_VERBS = ["plan", "fly", "check", "world", "campaign", "launch", "goto", "hol
              "land", "takeoff", "mission", "why", "view", "run",
              "bench plan", "bench search", "bench scenario", "bench stage", "bench dds", "bench corridor",
              "bench trajectory", "bench guard", "bench replan", "bench updates", "bench tracking",
-             "bench map", "bench sensors", "bench senses", "conform", "record", "replay",
+             "bench map", "bench sensors", "bench senses", "bench obstacles", "conform", "record", "replay",
              "bag record", "bag play", "bag info",
              "map info", "map save", "map load", "map crop", "map merge", "map diff", "map picture",
              "sense check",

@@ -119,7 +119,7 @@ class TrackerComponent : public Component {
         map_(node),
         commands_(node.advertise<msg::AttitudeSetpoint>("command", Qos::best_effort())),
         fallbacks_(node.advertise<msg::FallbackStop>("fallback_stop", Qos::best_effort())),
-        states_(node.advertise<msg::TrackingState>("tracking_state", Qos::best_effort())) {
+        states_(node.advertise<msg::TrackingState>("tracking_state", Qos::state())) {
     // Before the commits of the same moment, which it dates.
     node.subscribe<msg::NavigatorState>(
         "navigator_alive", Qos::best_effort(),

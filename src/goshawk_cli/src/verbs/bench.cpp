@@ -153,6 +153,7 @@ void add_bench(Program& program) {
   add_plain(bench, "replan", "what it takes to plan again in a forest that unfolds");
   add_plain(bench, "trajectory", "planners: durations, speeds, optimisation and whole plans");
   add_plain(bench, "sensors", "simulated lidars and cameras: what a ray costs in each world");
+  add_plain(bench, "obstacles", "a tracker of what moves, judged against the truth");
   add_plain(bench, "senses", "what the live map keeps of thin things, rain, and grazed floors");
   add_plain(bench, "tracking",
             "closed-loop flights: errors by controller, weather and plant, step times");

@@ -53,7 +53,8 @@ int print_node(const std::string& name, double timeout_s, const Console& console
                         {"process", node->process},
                         {"others", node->others},
                         {"publishers", topics_json(node->publishers)},
-                        {"subscribers", topics_json(node->subscribers)}});
+                        {"subscribers", topics_json(node->subscribers)},
+                        {"services", topics_json(node->services)}});
     return kDone;
   }
   fmt::print("Node: {}\nProcess: {}\n", node->name, node->process);
@@ -63,6 +64,7 @@ int print_node(const std::string& name, double timeout_s, const Console& console
   }
   print_named("Publishers", node->publishers);
   print_named("Subscribers", node->subscribers);
+  if (!node->services.empty()) print_named("Services", node->services);
   return kDone;
 }
 

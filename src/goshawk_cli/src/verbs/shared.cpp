@@ -66,7 +66,9 @@ Words topic_names(const Words&) {
   std::set<std::string> names;
   if (auto session = introspection::Session::open()) {
     (*session)->settle(kCompletion_s);
-    for (const auto& e : (*session)->context().endpoints()) names.insert(e.topic);
+    for (const auto& e : (*session)->context().endpoints()) {
+      if (e.topic.starts_with('/')) names.insert(e.topic);
+    }
   }
   return {names.begin(), names.end()};
 }

@@ -5,6 +5,7 @@
 
 #include "goshawk/introspection/graph.hpp"
 #include "goshawk/introspection/schema.hpp"
+#include "goshawk/introspection/services.hpp"
 
 namespace goshawk::cli {
 namespace {
@@ -17,22 +18,32 @@ int print_topics(double timeout_s, bool with_types, const Console& console) {
   auto session = Session::open();
   if (!session) return console.failed(session.error());
   const auto topics = introspection::list_topics(**session, timeout_s);
+  const auto services = introspection::services_of((*session)->context().endpoints());
   const int domain = (*session)->context().domain();
-  if (topics.empty()) {
+  if (topics.empty() && services.empty()) {
     return console.not_done(
         {ErrorCode::stage_silent, fmt::format("no topic was found in domain {}. Is something "
                                               "running, with the same ROS_DOMAIN_ID?",
                                               domain)});
   }
-  Json json = {{"domain", domain}, {"topics", Json::array()}};
+  Json json = {{"domain", domain}, {"topics", Json::array()}, {"services", Json::array()}};
+  const auto print_line = [&](const std::string& name, const std::set<std::string>& types) {
+    if (console.json()) return;
+    fmt::print("{}{}\n", name, with_types ? fmt::format(" [{}]", fmt::join(types, ", ")) : "");
+  };
   for (const auto& [name, topic] : topics) {
     json["topics"].push_back({{"name", name},
                               {"types", topic.types},
                               {"publishers", topic.publishers},
                               {"subscribers", topic.subscribers}});
-    if (console.json()) continue;
-    fmt::print("{}{}\n", name,
-               with_types ? fmt::format(" [{}]", fmt::join(topic.types, ", ")) : "");
+    print_line(name, topic.types);
+  }
+  for (const auto& [name, service] : services) {
+    json["services"].push_back({{"name", name},
+                                {"types", service.types},
+                                {"servers", service.servers},
+                                {"clients", service.clients}});
+    print_line("service " + name, service.types);
   }
   if (console.json()) console.print_line(json);
   return kDone;

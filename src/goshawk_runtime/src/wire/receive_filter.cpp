@@ -10,8 +10,6 @@
 #include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
 #include <fmt/format.h>
-#include <spdlog/sinks/stdout_sinks.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <array>
@@ -22,6 +20,7 @@
 #include <mutex>
 #include <vector>
 
+#include "../runtime_log.hpp"
 #include "datagram_check.hpp"
 #include "handshake_datagrams.hpp"
 
@@ -36,16 +35,6 @@ constexpr std::size_t kPrefixAt = 8;  // [byte] of the sender's GUID prefix in a
 // Fast DDS 2.9.1 may read as far past the end of a datagram: a fragment's size, which it takes from
 // an earlier datagram of the same message.
 constexpr std::size_t kPadding = 1U << 16;
-
-spdlog::logger& log() {
-  static const auto logger = [] {
-    auto made = std::make_shared<spdlog::logger>("goshawk_runtime",
-                                                 std::make_shared<spdlog::sinks::stderr_sink_mt>());
-    made->set_pattern("%Y-%m-%d %H:%M:%S.%e [%n] %l: %v");
-    return made;
-  }();
-  return *logger;
-}
 
 std::span<const std::byte> bytes(const rtps::octet* buffer, std::uint32_t size) {
   return {reinterpret_cast<const std::byte*>(buffer), size};
@@ -206,7 +195,7 @@ void Refusals::add(std::string_view fault, const std::string& from) {
   const std::lock_guard lock(mutex_);
   last_ = fmt::format("{}, from {}", fault, from);
   if (!std::has_single_bit(++count_)) return;
-  log().warn("a datagram was refused ({} so far): {}", count_, last_);
+  runtime_log().warn("a datagram was refused ({} so far): {}", count_, last_);
 }
 
 std::uint64_t Refusals::count() const {

@@ -36,6 +36,19 @@ std::vector<Finding> check_machine();
 /// The environment: domain, interfaces, profile file.
 std::vector<Finding> check_environment();
 
+/// What decides in a shell whether a program of ROS 2 that starts there meets Goshawk.
+struct RosShell {
+  std::string middleware;      // RMW_IMPLEMENTATION; empty: ROS 2's default, Fast DDS
+  std::string localhost_only;  // ROS_LOCALHOST_ONLY
+  std::string cyclone_uri;     // CYCLONEDDS_URI
+  bool has_profile = false;    // FASTRTPS_DEFAULT_PROFILES_FILE
+};
+RosShell ros_shell();
+
+/// Why ROS 2 sees nothing of Goshawk, and the line that mends it.
+/// @param interfaces of Goshawk: "loopback", "all" or addresses @param ros_processes in the domain
+Finding check_ros(const RosShell& shell, const std::string& interfaces, int ros_processes);
+
 /// Versions of Goshawk and of its libraries, as compiled and as loaded, and the viewer's browser.
 std::vector<Finding> check_versions();
 
@@ -78,7 +91,8 @@ class ClockWatch {
   double offset_s_;
 };
 
-/// Of datagrams that a node's process refused. @param count at least one @param message its report's
+/// Of datagrams that a node's process refused. @param count at least one @param message its
+/// report's
 Finding check_refused(const std::string& node, std::uint64_t count, const std::string& message);
 
 /// @param jump_s [s] change of the clock while it was watched

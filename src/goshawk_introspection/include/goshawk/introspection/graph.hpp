@@ -23,10 +23,11 @@ NodeList list_nodes(Session& session, double timeout_s);
 
 /// A node, and what its process writes and reads: DDS tells the process of a writer, not the node.
 struct NodeDetails {
-  std::string name;     // full
-  std::string process;  // name of its participant
-  std::vector<std::string> others;  // nodes of the same process
+  std::string name;                                            // full
+  std::string process;                                         // name of its participant
+  std::vector<std::string> others;                             // nodes of the same process
   std::map<std::string, std::string> publishers, subscribers;  // topic to type
+  std::map<std::string, std::string> services;  // that a process of ROS 2 serves, to type
 };
 
 /// @param name full, or without its leading '/'

@@ -13,24 +13,33 @@
 
 namespace goshawk::runtime {
 
+/// How ROS 2 is told of the nodes: in the bytes of one of its versions, which differ.
+enum class RosGraphLayout {
+  automatic,  // Humble's, until a process of Iron or later is met
+  humble,
+  iron,  // and later
+  off,   // ROS 2 sees the topics, but not the nodes
+};
+
 struct ContextOptions {
   int domain = 0;                       // 0 to 232
   std::string interfaces = "loopback";  // "loopback", "all", or IPv4 addresses with commas
   std::vector<std::string> node_names;  // full names, for `goshawk node list`
+  RosGraphLayout ros_graph = RosGraphLayout::automatic;
   /// For tests: is given each datagram that arrives, before it is checked, and each one sent. It is
   /// called by Fast DDS' threads, several at once.
   std::function<void(std::span<const std::byte> datagram, bool sent)> tap{};
 
-  /// ROS_DOMAIN_ID and GOSHAWK_INTERFACES, if they are set.
-  /// @return invalid_parameter for a domain that is not a number from 0 to 232, or for empty
-  /// interfaces
+  /// ROS_DOMAIN_ID, GOSHAWK_INTERFACES and GOSHAWK_ROS_GRAPH, if they are set.
+  /// @return invalid_parameter for a domain that is not a number from 0 to 232, for empty
+  /// interfaces, or for a layout that is not auto, humble, iron or off
   static Result<ContextOptions> from_environment();
 };
 
 /// What is in the domain at one moment.
 struct EndpointInfo {
-  std::string topic;        // as ROS names it: "/uav1/path"
-  std::string type;         // "goshawk_msgs/msg/Path"
+  std::string topic;  // as ROS names it: "/uav1/path"; what is no topic of ROS, as on the wire
+  std::string type;   // "goshawk_msgs/msg/Path"
   std::string participant;  // guid prefix
   bool writer = false;
   bool reliable = false;
@@ -41,6 +50,7 @@ struct ParticipantInfo {
   std::string name;
   std::vector<std::string> nodes;
   std::string version = "";  // of Goshawk; empty: another program, or one that does not say
+  bool is_ros = false;       // a process of ROS 2
 };
 
 /// One DDS participant: a process' membership in a domain.
@@ -61,6 +71,11 @@ class Context {
   int domain() const;
   std::vector<ParticipantInfo> participants() const;  // others, not this one
   std::vector<EndpointInfo> endpoints() const;        // of others
+
+  /// From here on participants() names the nodes of ROS 2's processes too, but those that ROS 2
+  /// hides. Does nothing with the permissions of DDS Security, which hold no topic for it.
+  /// @return io_failed if the middleware gives no reader
+  Status watch_ros_nodes();
 
   /// Malformed or forged datagrams, which Fast DDS was not given (docs/security.md).
   std::uint64_t refused_datagrams() const;
