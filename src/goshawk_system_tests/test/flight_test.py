@@ -197,6 +197,9 @@ class FlightThatFails(FlightCase):
                          (False, "goal_outside", "failed"))
         self.assertIn("cut by search_box", flight["message"])
         self.assertEqual([leg["arrived"] for leg in flight["legs"]], [True, False])
+        self.assertEqual(flight["why"]["binds"], "refused", flight["why"])
+        self.assertEqual(flight["why"]["stage"], "path_search")
+        self.assertIn("search_box", flight["why"]["because"])
 
     def test_ends_that_no_plan_can_have_are_refused_before_anything_starts(self):
         folder = self.sandbox.folder / "out"

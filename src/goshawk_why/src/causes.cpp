@@ -115,6 +115,8 @@ Reason failure(const Snapshot& s) {
     case start_unknown:
       return blocked_place(s, s.vehicle->position_map, "Its own place", Binds::start_blocked);
     case goal_outside:
+      // The search may be kept to a part of the map.
+      if (s.map->geometry.index_of(goal_map)) return refused(s);
       return {.binds = Binds::goal_outside,
               .because = fmt::format("Its goal {} lies outside of the map.", goal),
               .mend = fmt::format("Choose one between {} and {}.",

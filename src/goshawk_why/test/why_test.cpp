@@ -134,6 +134,9 @@ TEST(Why, AGoalOutsideTheMapAndOneThatIsCutOffAreToldApart) {
   const Reason outside = explain(failed(ErrorCode::goal_outside, {50, 5, 1}));
   EXPECT_EQ(outside.binds, Binds::goal_outside);
   EXPECT_THAT(outside.mend, HasSubstr("(10.000, 10.000, 4.000)"));
+  const Reason kept_out = explain(failed(ErrorCode::goal_outside, {5, 5, 1}, "cut by search_box"));
+  EXPECT_EQ(kept_out.binds, Binds::refused) << "the map reaches there";
+  EXPECT_THAT(kept_out.because, HasSubstr("cut by search_box"));
   const Reason cut_off = explain(failed(ErrorCode::no_path, {5, 5, 1}));
   EXPECT_EQ(cut_off.binds, Binds::unreachable);
   EXPECT_THAT(cut_off.because, HasSubstr("(5.000, 5.000, 1.000) in map 7"));

@@ -12,6 +12,9 @@ namespace goshawk::cli {
 namespace {
 
 constexpr std::size_t kPanels = 4;
+// By so much a recorder may be behind. Stages that have ended meanwhile do not count as silent yet.
+constexpr std::int64_t kRecorderLag_ns = 1'000'000'000;
+static_assert(double(kRecorderLag_ns) * 1e-9 < why::kSilent_s - 0.2);
 
 Result<recording::Reader> open_recording(const std::string& folder) {
   return recording::Reader::open(folder + "/flight.mcap");
@@ -32,6 +35,7 @@ Status add_recorded_world(const std::string& folder, std::int64_t origin_ns,
 Json recorded_reason(const std::string& folder, std::int64_t at_ns) {
   auto reader = open_recording(folder);
   if (!reader) return nullptr;
+  at_ns += kRecorderLag_ns;
   why::SnapshotCollector collector;
   if (!collector.read(*reader, "/", std::uint64_t(at_ns))) return nullptr;
   return to_json(why::explain(collector.snapshot(at_ns)));

@@ -15,6 +15,7 @@ Status add_recorded_world(const std::string& folder, std::int64_t origin_ns,
 
 /// Why the vehicle did not go on, at one moment: an object of docs/cli.md, or null if the recording
 /// cannot be read.
+/// @param at_ns [ns] when that was heard; what the recorder wrote within a second after it counts
 Json recorded_reason(const std::string& folder, std::int64_t at_ns);
 
 /// growth.png: up to four moments of a map that grew; nothing for one that did not.
