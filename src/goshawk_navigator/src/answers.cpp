@@ -48,7 +48,8 @@ void Navigator::take_answer(Commitment candidate, std::uint64_t number, std::int
                   now_ns);
   }
   if (wait_for_map(candidate, number, now_ns)) return;
-  candidate.start_time_ns = request.start_time_ns.value_or(now_ns + to_ns(config_.commit_lead_s));
+  const double lead_s = config_.commit_lead_s + longer_lead_s(pursuit_.failures);
+  candidate.start_time_ns = request.start_time_ns.value_or(now_ns + to_ns(lead_s));
   candidate.yaw_rad = pursuit_.goal.yaw_rad;
   const bool rests = !open_->from_motion();
   if (auto status = add_stop(candidate, rests); !status) {

@@ -39,7 +39,7 @@ std::optional<double> heading_of(const Trajectory& way) {
 Commitment Navigator::from_rest(CertifiedTrajectory way, std::int64_t now_ns) {
   return {.id = next_id_++,
           .nominal = std::move(way),
-          .start_time_ns = now_ns + to_ns(config_.commit_lead_s),
+          .start_time_ns = now_ns + to_ns(config_.commit_lead_s + longer_lead_s(pursuit_.failures)),
           .map_version = map()->version,
           .yaw_rad = yaw_of(vehicle_.q_map_base)};
 }

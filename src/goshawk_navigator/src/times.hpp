@@ -24,4 +24,11 @@ inline double pause_s(int failures) {
   return std::min(kLongest_s, kRetryDelay_s * std::pow(kGrowth, failures - 1));
 }
 
+/// [s] by which a plan from rest begins later, after so many trajectories in a row that the tracker
+/// did not fly: they may have come too late, over a network that loses packets.
+inline double longer_lead_s(int failures) {
+  constexpr double kLonger_s = 0.3;
+  return kLonger_s * failures;
+}
+
 }  // namespace goshawk::navigator

@@ -133,8 +133,25 @@ TEST(Navigator, OutlivesATrackerThatRefusesEverythingForSomeSeconds) {
   for (int i = 0; i < 200 && h.plans.size() == refused; ++i) h.pass(0.02);
   h.answer();
   h.tracker_says(h.commits.back().id(), ok());
-  h.pass(5.0);
+  h.pass(7.0);
   EXPECT_EQ(h.last().state, State::arrived);
+}
+
+// Over a network that loses packets a trajectory may come when its start has passed.
+TEST(Navigator, APlanFromRestBeginsLaterAfterEachThatTheTrackerRefused) {
+  Harness h;
+  h.goal(kGoal);
+  double lead_s = 0.0;
+  for (int attempt = 0; attempt < 4; ++attempt) {
+    const std::size_t asked = h.plans.size();
+    h.answer();
+    const double longer_s = double(h.commits.back().start_time_ns() - h.now) * 1e-9;
+    EXPECT_GT(longer_s, lead_s + (attempt > 0 ? 0.2 : 0.0)) << attempt;
+    lead_s = longer_s;
+    h.flown.clear();
+    h.tracker_says(h.commits.back().id(), {ErrorCode::not_at_start, "it began 0.5 s ago"});
+    for (int i = 0; i < 200 && h.plans.size() == asked; ++i) h.pass(0.02);
+  }
 }
 
 TEST(Navigator, GivesUpIfTheTrackerRefusesEveryAttempt) {
