@@ -196,25 +196,28 @@ struct Receiver::Impl : dds::DataReaderListener {
   dds::ConditionSeq active;
   std::vector<unsigned char> sample;
 
-  void on_data_available(dds::DataReader*) override { take(); }
+  // It may be called before create_datareader() has returned.
+  void on_data_available(dds::DataReader* from) override { take(*from); }
 
-  void take() { member.options.way == "loans" ? take_loans() : take_copies(); }
+  void take(dds::DataReader& from) {
+    member.options.way == "loans" ? take_loans(from) : take_copies(from);
+  }
 
-  void take_copies() {
+  void take_copies(dds::DataReader& from) {
     dds::SampleInfo info;
-    while (reader->take_next_sample(sample.data(), &info) == ReturnCode::RETCODE_OK) {
+    while (from.take_next_sample(sample.data(), &info) == ReturnCode::RETCODE_OK) {
       if (info.valid_data) callback(stamp_of(sample.data()));
     }
   }
 
-  void take_loans() {
+  void take_loans(dds::DataReader& from) {
     dds::LoanableSequence<unsigned char> samples;
     dds::SampleInfoSeq infos;
-    while (reader->take(samples, infos) == ReturnCode::RETCODE_OK) {
+    while (from.take(samples, infos) == ReturnCode::RETCODE_OK) {
       for (dds::LoanableCollection::size_type i = 0; i < infos.length(); ++i) {
         if (infos[i].valid_data) callback(stamp_of(&samples[i]));
       }
-      reader->return_loan(samples, infos);
+      from.return_loan(samples, infos);
     }
   }
 };
@@ -243,7 +246,7 @@ void Receiver::wait(double timeout_s) {
   if (impl_->member.options.listener) return;
   impl_->wait_set.wait(impl_->active,
                        eprosima::fastrtps::Duration_t(static_cast<long double>(timeout_s)));
-  impl_->take();
+  impl_->take(*impl_->reader);
 }
 
 int Receiver::matched() const {

@@ -36,6 +36,7 @@ class MapCase(SystemTest):
     def setUp(self):
         super().setUp()
         self.publishers = {}
+        self.place = None  # of the newest odometry
 
     def tell(self, topic, kind, message):
         if topic not in self.publishers:
@@ -43,12 +44,15 @@ class MapCase(SystemTest):
         self.publishers[topic].send(message)
 
     def send_odometry(self, position):
+        self.place = position
         self.tell("odom", "nav_msgs/msg/Odometry", odometry(position))
 
     def send_cloud(self, message, effect):
-        """Again and again until it has an effect: the reader is best effort and may lose one, or
-        take it before the odometry that was sent before. @return the effect"""
+        """Again and again until it has an effect, with the newest odometry before it: the readers
+        are best effort and may lose either. @return the effect"""
         def once_more():
+            if self.place is not None:
+                self.send_odometry(self.place)
             self.tell("cloud_in", "sensor_msgs/msg/PointCloud2", message)
             return until(effect, 0.1)
         found = until(once_more, 10.0)

@@ -115,7 +115,9 @@ void describe(Self& c, Visitor&& visit) {
   visit("replan_lead_s", c.replan_lead_s, "s",
         "a plan from a moving start begins this far ahead on the present trajectory",
         AtRunTime{Range{0.02, 10.0}});
-  visit("commit_lead_s", c.commit_lead_s, "s", "a plan from rest starts this long after it arrives",
+  visit("commit_lead_s", c.commit_lead_s, "s",
+        "a plan from rest starts this long after it arrives, and 0.3 s later after each trajectory "
+        "in a row that the tracker did not fly",
         AtRunTime{Range{0.0, 10.0}});
   visit("arrival_tolerance_m", c.arrival_tolerance_m, "m",
         "a vehicle this near to the goal has arrived", AtRunTime{Range::positive(10.0)});
