@@ -56,8 +56,10 @@ Status check_leg(const Leg& leg, const std::string& name) {
     }
   }
   if (!std::isfinite(leg.stop_after_s)) return wrong(name + " has a stop that is not finite");
-  if (!leg.nominal.pieces.empty() && !leg.nominal.check()) {
-    return wrong(name + " has a bad nominal part");
+  if (!leg.nominal.pieces.empty()) {
+    if (auto status = leg.nominal.check(); !status) {
+      return wrong(name + " has a bad nominal part: " + status.error().message);
+    }
   }
   if (leg.trajectory.pieces.empty()) return success();
   if (auto status = leg.trajectory.check(); !status) {

@@ -18,7 +18,8 @@ bool is_amount(double value) {
 }
 
 bool is_box(const Quaternion& q, const Vec3& half_extents_m) {
-  return q.coeffs().allFinite() && is_near(half_extents_m) && half_extents_m.minCoeff() >= 0.0;
+  return std::abs(q.norm() - 1.0) < 1e-6 && is_near(half_extents_m) &&
+         half_extents_m.minCoeff() >= 0.0;
 }
 
 bool is_track(const std::vector<PredictedBox::Piece>& track) {
@@ -32,10 +33,15 @@ bool is_track(const std::vector<PredictedBox::Piece>& track) {
   return !track.empty();
 }
 
-Error wrong_mover(const char* what, std::uint64_t id) {
+Error wrong_prediction(const char* what, std::uint64_t id) {
   return fail(ErrorCode::invalid_input,
-              fmt::format("the {} of moving box {} is not finite, negative, empty or beyond 1e6",
+              fmt::format("the predicted {} of moving box {} is empty, negative, not finite or "
+                          "beyond 1e6",
                           what, id));
+}
+
+Error no_time(const char* of) {
+  return fail(ErrorCode::invalid_input, fmt::format("the time of {} is not finite", of));
 }
 
 }  // namespace
@@ -43,20 +49,19 @@ Error wrong_mover(const char* what, std::uint64_t id) {
 Status check_movers(const std::vector<MoversMoment>& movers,
                     const std::vector<PredictionsMoment>& predictions) {
   for (const auto& moment : movers) {
+    if (!std::isfinite(moment.t_s)) return no_time("moving boxes");
     for (const MovingBox& box : moment.boxes) {
-      if (!std::isfinite(moment.t_s)) return wrong_mover("time", box.id);
-      if (!is_near(box.center_map)) return wrong_mover("centre", box.id);
-      if (!is_box(box.q_map_box, box.half_extents_m)) return wrong_mover("shape", box.id);
+      if (auto status = box.check(); !status) return status;
     }
   }
   for (const auto& moment : predictions) {
+    if (!std::isfinite(moment.t_s)) return no_time("predictions");
     for (const PredictedBox& box : moment.boxes) {
-      if (!std::isfinite(moment.t_s)) return wrong_mover("time", box.id);
-      if (!is_box(box.q_map_box, box.half_extents_m)) return wrong_mover("shape", box.id);
-      if (!is_track(box.track)) return wrong_mover("track", box.id);
+      if (!is_box(box.q_map_box, box.half_extents_m)) return wrong_prediction("shape", box.id);
+      if (!is_track(box.track)) return wrong_prediction("track", box.id);
       if (!is_amount(box.error_m) || !is_amount(box.error_rate_m_s) ||
           !is_amount(box.valid_until_s)) {
-        return wrong_mover("bound", box.id);
+        return wrong_prediction("bound", box.id);
       }
     }
   }

@@ -100,9 +100,9 @@ Json to_json(const Quaternion& q) {
 Json to_json(const MovingBox& box) {
   return {{"id", box.id},
           {"kind", box.kind},
-          {"p", to_json(box.center_map)},
+          {"p", to_json(box.position_map)},
           {"q", to_json(box.q_map_box)},
-          {"half", to_json(box.half_extents_m)}};
+          {"half", to_json(box.half_m)}};
 }
 
 Json to_json(const PredictedBox& box) {

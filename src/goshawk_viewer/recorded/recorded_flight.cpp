@@ -2,6 +2,7 @@
 
 #include "goshawk/conversions/geometry.hpp"
 #include "goshawk/conversions/grid.hpp"
+#include "goshawk/conversions/moving_boxes.hpp"
 #include "goshawk/conversions/plan.hpp"
 #include "goshawk/conversions/vehicle.hpp"
 #include "goshawk/core/grid_update.hpp"
@@ -45,10 +46,6 @@ double seconds(std::int64_t ns) {
 template <typename Message>
 double stamp_s(const Message& m) {
   return seconds(conversions::to_ns(m.header().stamp()));
-}
-
-Quaternion rotation_of(const geometry_msgs::msg::Quaternion& q) {
-  return {q.w(), q.x(), q.y(), q.z()};
 }
 
 /// Appends a moment that holds and is new enough. @param check of the moment alone
@@ -197,26 +194,25 @@ Status RecordedFlight::take_navigator(const Bytes& bytes) {
 Status RecordedFlight::take_movers(const Bytes& bytes) {
   const auto m = decoded<msg::MovingBoxes>(bytes);
   if (!m) return m.error();
-  MoversMoment moment{stamp_s(*m), {}};
-  for (const auto& box : m->boxes()) {
-    moment.boxes.push_back({.id = box.id(),
-                            .kind = box.kind(),
-                            .center_map = conversions::from_msg(box.pose().position()),
-                            .q_map_box = rotation_of(box.pose().orientation()),
-                            .half_extents_m = conversions::from_msg(box.half_extents())});
-  }
-  return keep(movers_, std::move(moment),
+  auto boxes = conversions::from_msg(*m);
+  if (!boxes) return boxes.error();
+  return keep(movers_, MoversMoment{stamp_s(*m), *std::move(boxes)},
               [](const auto& one) { return flight_report::check_movers({one}, {}); });
 }
 
 Status RecordedFlight::take_predictions(const Bytes& bytes) {
   const auto m = decoded<msg::PredictedObstacles>(bytes);
   if (!m) return m.error();
+  if (auto s = conversions::check_frame(m->header(), conversions::kMapFrame, "a prediction"); !s) {
+    return s;
+  }
   PredictionsMoment moment{stamp_s(*m), {}};
   for (const auto& obstacle : m->obstacles()) {
+    const auto q = conversions::from_msg(obstacle.orientation());
+    if (!q) return q.error();
     flight_report::PredictedBox box{
         .id = obstacle.id(),
-        .q_map_box = rotation_of(obstacle.orientation()),
+        .q_map_box = *q,
         .half_extents_m = conversions::from_msg(obstacle.half_extents()),
         .track = {},
         .error_m = obstacle.error(),

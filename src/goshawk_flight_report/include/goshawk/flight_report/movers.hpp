@@ -1,22 +1,11 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 #include <vector>
 
-#include "goshawk/core/result.hpp"
-#include "goshawk/core/vehicle.hpp"
+#include "goshawk/core/moving_box.hpp"
 
 namespace goshawk::flight_report {
-
-/// A box that moves, at one moment. Frame `map`.
-struct MovingBox {
-  std::uint64_t id = 0;
-  std::string kind = {};  // "person", ...; empty: not known
-  Vec3 center_map = Vec3::Zero();
-  Quaternion q_map_box = Quaternion::Identity();
-  Vec3 half_extents_m = Vec3::Zero();
-};
 
 /// All that moved, at one moment.
 struct MoversMoment {
@@ -46,8 +35,9 @@ struct PredictionsMoment {
   std::vector<PredictedBox> boxes = {};
 };
 
-/// @return invalid_input for numbers that are not finite or beyond 1e6, negative sizes or errors, a
-/// track without pieces, a piece without points or duration
+/// @return invalid_input for a box that fails its own check; for predictions with numbers that are
+/// not finite or beyond 1e6, a quaternion without length 1, negative sizes or errors, a track
+/// without pieces, a piece without points or duration
 Status check_movers(const std::vector<MoversMoment>& movers,
                     const std::vector<PredictionsMoment>& predictions);
 
