@@ -96,8 +96,8 @@ class ViewerBridgeComponent : public Component {
         config_(node.parameters<Config>()),
         server_(start_server(config_)),
         context_(join()),
-        dds_(*context_, "viewer_bridge_reader"),
         why_(node.advertise<std_msgs::msg::String>("why", Qos::reliable_last())),
+        dds_(*context_, "viewer_bridge_reader"),
         reporter_(node, StageRole::viewer, "foxglove.websocket.v1") {
     dds_.every(kLookAround_s, [this] { look_around(); });
     dds_.every(kServe_s, [this] { serve(); });
@@ -126,8 +126,9 @@ class ViewerBridgeComponent : public Component {
     return *std::move(context);
   }
 
-  // What binds the vehicle, in the words of `goshawk why`: only as long as somebody reads it, for
-  // it needs the map. The silence of stages shows once they were listened for.
+  // The sentences of `goshawk why`, while somebody reads them. It listens from the first reader on,
+  // because it needs the map, and explains once a silent stage could be told from one not yet
+  // heard.
   void explain() {
     if (why_.matched() == 0) return;
     if (!collector_) {
@@ -285,13 +286,13 @@ class ViewerBridgeComponent : public Component {
   std::unique_ptr<Context> context_;
   std::optional<why::SnapshotCollector> collector_;  // in the node's own thread
   std::int64_t listening_since_ns_ = 0;
+  Publisher<std_msgs::msg::String> why_;
   // From here on used by the thread alone.
   std::vector<std::unique_ptr<MessageType>> types_;
   std::map<std::uint32_t, Topic> topics_;
   std::set<std::string> known_;
   std::uint32_t next_channel_ = 1;
   Node dds_;
-  Publisher<std_msgs::msg::String> why_;
   std::map<std::pair<std::string, std::string_view>, RawPublisher> publishers_;
   StageReporter reporter_;
   std::thread thread_;
