@@ -7,6 +7,7 @@ Object.assign(Goshawk.LivePage.prototype, {
   },
 
   aim(on) {
+    if (on && this.measuring) this.measure(false);
     this.aiming = on;
     $('goal').setAttribute('aria-pressed', on);
     document.body.classList.toggle('aiming', on);

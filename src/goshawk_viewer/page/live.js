@@ -141,13 +141,18 @@ Goshawk.LivePage = class extends Goshawk.Page {
     this.mapUpdates = (this.mapUpdates || 0) + 1;
   }
 
-  // In the frame map, or in the vehicle's: others are not drawn.
+  // In the frame map, or in the vehicle's: others are not drawn. Read when it is drawn: newer ones may come first.
   onCloud(m) {
-    if (!this.view || !this.pose) return;
-    const cloud = Goshawk.cloudPlaces(m, m.header.frame_id === 'base_link' ? this.pose : null);
-    if (!cloud || (m.header.frame_id !== 'map' && m.header.frame_id !== 'base_link')) return;
+    const inBody = m.header.frame_id === 'base_link';
+    if (!this.view || !this.pose || !(inBody || m.header.frame_id === 'map')) return;
+    this.cloud = {message: m, pose: inBody ? this.pose : null};
+  }
+
+  drawCloud({message, pose}) {
+    const places = Goshawk.cloudPlaces(message, pose);
+    if (!places) return;
     this.found('cloud');
-    this.cloud = cloud;
+    this.view.parts.setCloud(places);
   }
 
   onMovers(m) {
@@ -325,7 +330,7 @@ Goshawk.LivePage = class extends Goshawk.Page {
     }
     if (changes.dirty.size && view.maps.known) view.parts.setChanges(view.maps.known, changes.places);
     changes.clear();
-    if (this.cloud) view.parts.setCloud(this.cloud);
+    if (this.cloud) this.drawCloud(this.cloud);
     this.cloud = null;
     this.mapOld = false;
     this.nextMap = time + Math.max(0.2, 5e-3 * (performance.now() - begin));

@@ -6,7 +6,7 @@ Goshawk.layerNames = [
   ['obstacles', 'obstacles', t => t.high], ['above', 'above the cut', t => t.ghost, 'hollow'],
   ['grown', 'too close to fly', t => t.grown], ['unseen', 'edge of the unseen', t => t.unseen],
   ['changed', 'changed just now', () => 0xff731a], ['cloud', 'cloud', t => t.cloud],
-  ['window', 'window of the map', t => t.ghost, 'hollow'], ['raw', 'voxel path', t => t.raw, 'thin'],
+  ['window', 'map window', t => t.ghost, 'hollow'], ['raw', 'voxel path', t => t.raw, 'thin'],
   ['pruned', 'pruned path', t => t.pruned, 'thin'], ['corridor', 'corridor', t => t.corridor],
   ['trajectory', 'plan, by speed', null], ['nominal', 'nominal part', t => t.nominal, 'thin'],
   ['stop', 'stop part', t => t.stop, 'thin'], ['flown', 'flown track', t => t.flown, 'thin'],
@@ -71,6 +71,9 @@ Goshawk.Page = class {
   // A layer was shown or hidden.
   onLayer() {}
 
+  // The live page takes goals by clicks.
+  aim() {}
+
   // Layers without content are not in the legend. @param have {name: whether there is something}
   showLayers(have) {
     for (const [name, there] of Object.entries(have)) {
@@ -105,6 +108,7 @@ Goshawk.Page = class {
 
   // Distances between two places that are clicked: of the map, or of the plane at the vehicle's height.
   measure(on) {
+    if (on) this.aim(false);  // a click measures or sends a goal, never both
     this.measuring = on ? [] : null;
     $('measure').setAttribute('aria-pressed', on);
     document.body.classList.toggle('aiming', on);
@@ -165,6 +169,7 @@ Goshawk.Page = class {
     if (key === '0') this.view.frame(this.framed());
     if (key === 'f') this.follow();
     if (key === 'm') this.measure(!this.measuring);
+    if (key === 'escape' && this.measuring) this.measure(false);
   }
 
   // @param at where the map is cut at first [m]

@@ -40,6 +40,13 @@ check(person[0].kind === 'person' && person[0].p[2] === 0.9 && person[1] === 0.2
 check(await until(page, () => goshawk.view.layers.cloud.children.length > 0), 'the cloud is drawn');
 await page.evaluate(() => document.getElementById('layer-cloud').click());
 check(await page.evaluate(() => goshawk.client.unread.has('points')), 'and no longer read when it is hidden');
+
+// A click measures or sends a goal, never both.
+const clicks = await page.evaluate(() => {
+  const pressed = () => ['goal', 'measure'].map(id => document.getElementById(id).getAttribute('aria-pressed')).join();
+  return ['goal', 'measure', 'goal', 'goal'].map(id => { document.getElementById(id).click(); return pressed(); });
+});
+check(clicks.join(' ') === 'true,false false,true true,false false,false', `what a click does: ${clicks}`);
 check(complaints.length === 0, `no complaints: ${complaints}`);
 await browser.close();
 end();
