@@ -128,7 +128,8 @@ Goshawk.Parts = class {
   setCloud(points) {
     this.view.clear('cloud');
     this.cloud = points;
-    this.points('cloud', points, {size: 1.6, fixed: true, color: this.view.theme.cloud, opacity: 0.75});
+    // Thin: the vehicle, its plan and obstacles lie behind it.
+    this.points('cloud', points, {size: 1, fixed: true, color: this.view.theme.cloud, opacity: 0.25});
     this.view.redraw = true;
   }
 
