@@ -81,6 +81,7 @@ TEST_F(MoversFile, TheTrackOfAFileIsCheckedWithItsLine) {
 
 TEST_F(MoversFile, AMissingFileIsSaid) {
   EXPECT_EQ(read_movers(folder_ / "none.yaml").code(), ErrorCode::io_failed);
+  EXPECT_EQ(read_movers(folder_).code(), ErrorCode::io_failed);
 }
 
 TEST(MoversText, FaultsAreNamedWithTheirLine) {
