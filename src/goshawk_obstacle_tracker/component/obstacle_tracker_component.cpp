@@ -55,7 +55,7 @@ class ObstacleTrackerComponent : public Component {
           Writers::one("movers"));
     }
     node.every(kReport_s, [this] { report(); });
-    reporter_.ready(fmt::format("tracks what moves within {:g} m, by {}", config_.tracker.range_m,
+    reporter_.ready(fmt::format("tracks what moves within {:g} m, from {}", config_.tracker.range_m,
                                 to_word(config_.source)));
   }
 
@@ -104,7 +104,7 @@ class ObstacleTrackerComponent : public Component {
       if (!q || !is_finite(p)) {
         reporter_.complain(fail(ErrorCode::invalid_input,
                                 fmt::format("the transform of '{}' is not finite, or its "
-                                            "quaternion is no rotation",
+                                            "quaternion is not of length 1",
                                             t.child_frame_id())));
       } else if (fixed) {
         frames_.set_static(t.header().frame_id(), t.child_frame_id(), {p, *q});
