@@ -4,8 +4,8 @@
     stall    SIGSTOP of a stage, of all stages, or of everything and the vehicle; then SIGCONT
     clock    the wall clock of a stage, or of all, is stepped, and later stepped back
     loss     a stage, or all, lose a part of the datagrams that they receive
-    blind    the map server falls silent, or starts again with an empty map; in a live flight the lidar
-             falls silent or is covered
+    blind    the map server falls silent, or starts again with an empty map; in a live flight the
+             lidar falls silent or is covered
     hostile  mutated datagrams to every process, or a stranger who publishes forged messages
 
 The vehicle (the plant) is never killed, and never stalled alone: no fault of software stops a body.

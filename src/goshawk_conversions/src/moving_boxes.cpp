@@ -53,7 +53,7 @@ Result<std::vector<MovingBox>> from_msg(const goshawk_msgs::msg::MovingBoxes& m)
     auto box = box_of(b);
     if (!box) return box.error();
     if (!ids.insert(box->id).second) {
-      return fail(ErrorCode::invalid_input, fmt::format("moving box {} is there twice", box->id));
+      return fail(ErrorCode::invalid_input, fmt::format("moving box {} is listed twice", box->id));
     }
     boxes.push_back(*std::move(box));
   }

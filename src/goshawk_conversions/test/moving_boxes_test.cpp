@@ -67,7 +67,7 @@ TEST(MovingBoxes, BadOnesAreRefusedWithASentence) {
 
 TEST(MovingBoxes, NoTwoHaveOneIdAndNoListIsEndless) {
   EXPECT_THAT(from_msg(message_of({person(), person()})).error().message,
-              HasSubstr("box 7 is there twice"));
+              HasSubstr("box 7 is listed twice"));
   const std::vector<MovingBox> many(kMostMovingBoxes + 1, person());
   EXPECT_THAT(from_msg(message_of(many)).error().message, HasSubstr("more than 10000"));
   auto elsewhere = message_of({});

@@ -44,6 +44,12 @@ Result<Verdict> judge_parts(const FlightCheck& check, const Plan& plan, double t
   return fail(ErrorCode::invalid_input, "the plan has no sample to judge: plan again");
 }
 
+Error without_map(const MoverVerdict& movers) {
+  return fail(
+      movers.touched.empty() ? ErrorCode::no_map : ErrorCode::collision,
+      "no map came yet: the flight is judged against what moves alone; " + movers.sentence());
+}
+
 }  // namespace
 
 void Watch::set_map(FlightCheck check) {
@@ -147,7 +153,10 @@ void Watch::judge_flown() {
 void Watch::judge_movers(std::span<const Sample> track) {
   if (!movers_) return;
   auto verdict = movers_->judge(track);
-  if (!verdict) return;  // judge_flown() tells of a track that cannot be judged
+  if (!verdict) {  // with a map, judge_flown() reports the same
+    if (!check_) findings_.push_back({Kind::event, 0, verdict.error()});
+    return;
+  }
   const bool is_news = std::ranges::any_of(
       verdict->touched, [&](std::uint64_t id) { return !touching_movers_.contains(id); });
   touching_movers_ = {verdict->touched.begin(), verdict->touched.end()};
@@ -164,8 +173,10 @@ void Watch::judge_movers(std::span<const Sample> track) {
 }
 
 void Watch::finish_leg() {
-  if (!leg_ || !leg_->flown) return;
-  findings_.push_back({Kind::flown, leg_->id, *leg_->flown, leg_->movers});
+  if (!leg_ || (!leg_->flown && !leg_->movers)) return;
+  Result<Verdict> outcome =
+      leg_->flown ? Result<Verdict>(*leg_->flown) : without_map(*leg_->movers);
+  findings_.push_back({Kind::flown, leg_->id, std::move(outcome), leg_->movers});
   leg_.reset();
 }
 

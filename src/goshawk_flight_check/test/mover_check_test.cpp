@@ -145,5 +145,38 @@ TEST(Watch, AContactWithAMoverIsToldOnceAndApartFromTheWorld) {
   EXPECT_THAT(findings[0].outcome.error().message, HasSubstr("mover 5 (person)"));
 }
 
+TEST(Watch, WithoutAMapTheMoversAreStillJudged) {
+  Watch watch;
+  watch.set_movers(MoverCheck::create({crossing(5, 0.0, 2.0)}, 0.0).value());
+  watch.commit({.request_id = 7,
+                .start_s = 0.0,
+                .nominal = {{0.0, Vec3(3, 0, 1)}, {1.5, Vec3(3, 0, 1)}},
+                .stop = {}});
+  std::vector<Finding> flown;
+  const auto collect = [&](Finding::Kind kind) {
+    for (auto& f : watch.take_findings()) {
+      if (f.kind == kind) flown.push_back(std::move(f));
+    }
+  };
+  for (int i = 0; i <= 60; ++i) {
+    watch.fly({{0.05 * i, Vec3(3, 0, 1)}, 0.0});
+    watch.tick(0.05 * i);
+    collect(Finding::Kind::flown);
+  }
+  ASSERT_EQ(flown.size(), 1u);
+  EXPECT_EQ(flown[0].request_id, 7u);
+  EXPECT_EQ(flown[0].outcome.code(), ErrorCode::no_map);
+  EXPECT_THAT(flown[0].outcome.error().message, HasSubstr("touched nothing that moves"));
+  ASSERT_TRUE(flown[0].movers);
+  EXPECT_NEAR(flown[0].movers->clearance_m, 3.0 - 0.25 - 0.15, 2e-3);
+  // A track that cannot be judged is reported, not passed over.
+  flown.clear();
+  watch.fly({{3.05, Vec3(3, 0, 1), Quaternion(2, 0, 0, 0)}, 0.0});
+  watch.tick(3.05);
+  collect(Finding::Kind::event);
+  ASSERT_EQ(flown.size(), 1u);
+  EXPECT_EQ(flown[0].outcome.code(), ErrorCode::invalid_input);
+}
+
 }  // namespace
 }  // namespace goshawk::flight_check

@@ -54,6 +54,13 @@ Finding check_ros(const RosShell& shell, const std::string& interfaces, int ros_
             "give both sides the same file, or unset FASTRTPS_DEFAULT_PROFILES_FILE "
             "(docs/ros2.md)"};
   }
+  const bool cyclone = has(shell.middleware, "cyclone");
+  if (cyclone && !shell.cyclone_uri.empty() && !has(shell.cyclone_uri, "<")) {
+    return {kAbout, Level::note,
+            "no process in this domain; the file in CYCLONEDDS_URI decides whether one can be met",
+            "Goshawk is found on its own interfaces alone, and it sends no multicast on loopback",
+            "compare the file with the settings for Cyclone DDS in docs/ros2.md"};
+  }
   if (interfaces != "loopback") {
     return {kAbout, Level::fine,
             fmt::format("no process in this domain; Goshawk is on the interfaces {}", interfaces)};
@@ -62,7 +69,6 @@ Finding check_ros(const RosShell& shell, const std::string& interfaces, int ros_
     return {kAbout, Level::fine,
             "no process in this domain; one that starts in this shell meets Goshawk"};
   }
-  const bool cyclone = has(shell.middleware, "cyclone");
   return {kAbout, Level::note,
           "no process in this domain; one with the settings of this shell does not meet Goshawk, "
           "which is on loopback without multicast",

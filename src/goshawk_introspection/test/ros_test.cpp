@@ -83,6 +83,15 @@ TEST(DoctorOfRos, GivesTheLineForEachVendor) {
   EXPECT_EQ(check_ros({"rmw_cyclonedds_cpp", "", uri, false}, "loopback", 0).level, Level::fine);
 }
 
+TEST(DoctorOfRos, DoesNotJudgeAFileOfCyclone) {
+  const std::string file = "file:///etc/cyclone.xml";
+  const Finding finding = check_ros({"rmw_cyclonedds_cpp", "", file, false}, "loopback", 0);
+  EXPECT_EQ(finding.level, Level::note);
+  EXPECT_THAT(finding.message, HasSubstr("the file in CYCLONEDDS_URI decides"));
+  // Fast DDS does not read it.
+  EXPECT_EQ(check_ros({"rmw_fastrtps_cpp", "1", file, false}, "loopback", 0).level, Level::fine);
+}
+
 TEST(DoctorOfRos, KnowsThatAProfileDecides) {
   const Finding finding = check_ros({"", "1", "", true}, "loopback", 0);
   EXPECT_EQ(finding.level, Level::note);

@@ -18,6 +18,7 @@
 #include "goshawk/map_server_messages/cloud.hpp"
 #include "goshawk/map_server_messages/depth_image.hpp"
 #include "goshawk/map_server_messages/octomap.hpp"
+#include "goshawk/map_server_messages/transform.hpp"
 #include "goshawk/runtime/clock.hpp"
 #include "goshawk/runtime/component.hpp"
 #include "goshawk/stage/intake.hpp"
@@ -197,22 +198,7 @@ class MapServerComponent : public Component {
       if (t.child_frame_id() == conversions::kBodyFrame) continue;
       // What a parameter says of the mount, nobody else says.
       if (t.child_frame_id() == config_.sensor_frame) continue;
-      const auto q = conversions::from_msg(t.transform().rotation());
-      const Vec3 p = conversions::from_msg(t.transform().translation());
-      if (!q || !is_finite(p)) {
-        reporter_.fault(fail(ErrorCode::invalid_input,
-                             fmt::format("the transform of '{}' is not finite, or its quaternion "
-                                         "is not of length 1",
-                                         t.child_frame_id())));
-        continue;
-      }
-      if (fixed) {
-        frames_.set_static(t.header().frame_id(), t.child_frame_id(), {p, *q});
-      } else if (auto s = frames_.add(t.header().frame_id(), t.child_frame_id(),
-                                      conversions::to_ns(t.header().stamp()), {p, *q});
-                 !s) {
-        reporter_.fault(s.error());
-      }
+      if (auto status = add_transform(t, fixed, frames_); !status) reporter_.fault(status.error());
     }
   }
 

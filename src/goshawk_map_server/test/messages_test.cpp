@@ -7,6 +7,7 @@
 #include "goshawk/map_server_messages/cloud.hpp"
 #include "goshawk/map_server_messages/depth_image.hpp"
 #include "goshawk/map_server_messages/octomap.hpp"
+#include "goshawk/map_server_messages/transform.hpp"
 
 namespace goshawk::map_server {
 namespace {
@@ -257,6 +258,36 @@ TEST(OctoMaps, ComeBackFromTheirMessageAsTheyWere) {
   m.binary(true);
   m.data().pop_back();
   EXPECT_FALSE(read_octomap(m));
+}
+
+geometry_msgs::msg::TransformStamped transform(double x_m, double w) {
+  geometry_msgs::msg::TransformStamped m;
+  m.header().frame_id("base_link");
+  m.header().stamp().sec(3);
+  m.child_frame_id("lidar");
+  m.transform().translation().x(x_m);
+  m.transform().rotation().w(w);
+  return m;
+}
+
+TEST(Transforms, FixedOnesHoldAtAllTimesAndOthersAtTheirStamp) {
+  FrameTree frames(5.0, 0.5);
+  ASSERT_TRUE(add_transform(transform(0.2, 1.0), true, frames));
+  EXPECT_EQ(frames.chain("lidar", "base_link")->at(77)->position, Vec3(0.2, 0, 0));
+  FrameTree moving(5.0, 0.5);
+  ASSERT_TRUE(add_transform(transform(0.3, 1.0), false, moving));
+  EXPECT_EQ(moving.chain("lidar", "base_link")->at(3'000'000'000)->position, Vec3(0.3, 0, 0));
+  EXPECT_FALSE(moving.chain("lidar", "base_link")->at(77));
+}
+
+TEST(Transforms, ThatAreNoPoseAreRefusedByName) {
+  FrameTree frames(5.0, 0.5);
+  for (const auto& m : {transform(kNan, 1.0), transform(0.2, 0.0), transform(0.2, kNan)}) {
+    const auto status = add_transform(m, true, frames);
+    EXPECT_EQ(status.code(), ErrorCode::invalid_input);
+    EXPECT_THAT(status.error().message, HasSubstr("'lidar'"));
+  }
+  EXPECT_FALSE(frames.chain("lidar", "base_link"));
 }
 
 }  // namespace

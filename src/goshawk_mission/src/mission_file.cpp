@@ -57,11 +57,12 @@ Result<MissionFile> parse_mission(const std::string& path, const std::string& te
 
 Result<MissionFile> read_mission(const std::string& path) {
   std::ifstream stream(path, std::ios::binary);
-  const std::string text(std::istreambuf_iterator<char>(stream), {});
+  stream.peek();  // a folder can be opened, but not read
   if (!stream.is_open() || stream.bad()) {
     return fail(ErrorCode::io_failed,
                 fmt::format("{} cannot be read: {}", path, std::strerror(errno)));
   }
+  const std::string text(std::istreambuf_iterator<char>(stream), {});
   return parse_mission(path, text);
 }
 

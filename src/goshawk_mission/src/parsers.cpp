@@ -4,11 +4,11 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <numbers>
 #include <sstream>
 #include <vector>
+
+#include "goshawk/core/number.hpp"
 
 namespace goshawk::mission {
 namespace {
@@ -159,15 +159,12 @@ std::string field_names() {
 }
 
 double number_of(const std::string& text, std::string_view what, int line) {
-  double value = 0.0;
-  const char* end = text.data() + text.size();
-  const char* begin = text.data() + (text.starts_with('+') ? 1 : 0);
-  const auto [stop, error] = std::from_chars(begin, end, value);
-  if (text.empty() || error != std::errc{} || stop != end || !std::isfinite(value)) {
+  const auto value = finite_number(text);
+  if (!value) {
     throw LineFault{line, text.empty() ? fmt::format("{} is empty", what)
                                        : fmt::format("{}: '{}' is not a number", what, text)};
   }
-  return value;
+  return *value;
 }
 
 void parse_yaml(const std::string& text, MissionFile& file) {

@@ -110,6 +110,7 @@ TEST(MissionFiles, ThatCannotBeReadSayWhy) {
   const auto file = read_mission("/nowhere/a.yaml");
   EXPECT_EQ(file.code(), ErrorCode::io_failed);
   EXPECT_THAT(file.error().message, HasSubstr("/nowhere/a.yaml cannot be read: No such file"));
+  EXPECT_EQ(read_mission(testing::TempDir()).code(), ErrorCode::io_failed);
 }
 
 }  // namespace

@@ -11,15 +11,17 @@ namespace {
 constexpr double kMovingShare = 0.65, kPillarShare = 0.35;
 constexpr double kCube_m = 0.8;
 constexpr double kPillarHeight_m = 2.0;
+constexpr double kLeastDivisor_s = 1e-2;  // below, a trefoil is faster than 1000 m/s
 
 Status check(const LeagueMovers& w) {
-  const bool divisors =
-      w.divisor_min_s > 0.0 && w.divisor_min_s <= w.divisor_max_s && std::isfinite(w.divisor_max_s);
+  const bool divisors = w.divisor_min_s >= kLeastDivisor_s && w.divisor_min_s <= w.divisor_max_s &&
+                        std::isfinite(w.divisor_max_s);
   if (w.count < 1 || w.count > 10'000) {
     return fail(ErrorCode::invalid_input, "count is outside of 1 to 10,000");
   }
   if (!divisors) {
-    return fail(ErrorCode::invalid_input, "divisor needs two numbers above 0, the smaller first");
+    return fail(ErrorCode::invalid_input,
+                "divisor_s needs two numbers of 0.01 or more, the smaller first");
   }
   if (!(w.speed_m_s >= 0.0 && w.speed_m_s <= 100.0)) {
     return fail(ErrorCode::invalid_input, "speed is outside of 0 to 100 m/s");

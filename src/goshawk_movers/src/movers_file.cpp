@@ -28,7 +28,7 @@ namespace {
 constexpr double kDegrees = std::numbers::pi / 180.0;  // [rad]
 constexpr std::size_t kMost = 10'000;                  // movers
 
-/// Unwraps what a library says, or names the line.
+/// The value of a result. @throws LineFault with its error's message and the line
 template <typename T>
 T checked(Result<T> result, int line) {
   if (!result) throw LineFault{line, result.error().message};
@@ -206,11 +206,12 @@ Result<std::vector<Mover>> parse_movers(const std::filesystem::path& name,
 
 Result<std::vector<Mover>> read_movers(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
-  const std::string text(std::istreambuf_iterator<char>(stream), {});
+  stream.peek();  // a folder can be opened, but not read
   if (!stream.is_open() || stream.bad()) {
     return fail(ErrorCode::io_failed,
                 fmt::format("{} cannot be read: {}", file.string(), std::strerror(errno)));
   }
+  const std::string text(std::istreambuf_iterator<char>(stream), {});
   return parse_movers(file, text);
 }
 

@@ -4,8 +4,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
+
+#include "goshawk/core/number.hpp"
 
 namespace goshawk::movers {
 namespace {
@@ -31,15 +32,12 @@ Vec3 vector_in(const YAML::Node& node, std::string_view what) {
 }  // namespace
 
 double number_of(const std::string& text, std::string_view what, int line) {
-  double value = 0.0;
-  const char* end = text.data() + text.size();
-  const char* begin = text.data() + (text.starts_with('+') ? 1 : 0);
-  const auto [stop, error] = std::from_chars(begin, end, value);
-  if (text.empty() || error != std::errc{} || stop != end || !std::isfinite(value)) {
+  const auto value = finite_number(text);
+  if (!value) {
     throw LineFault{line, text.empty() ? fmt::format("{} is empty", what)
                                        : fmt::format("{}: '{}' is not a number", what, text)};
   }
-  return value;
+  return *value;
 }
 
 YamlKeys::YamlKeys(const YAML::Node& map, std::string what,

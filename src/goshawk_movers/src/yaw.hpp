@@ -1,8 +1,8 @@
 #pragma once
 
 #include <cmath>
-#include <numbers>
 
+#include "goshawk/core/flatness.hpp"
 #include "goshawk/core/vehicle.hpp"
 
 namespace goshawk::movers {
@@ -14,7 +14,7 @@ inline Quaternion from_yaw(double yaw_rad) {
 
 /// [rad] from one heading to another, the shorter way: -pi to pi
 inline double shorter_turn(double from_rad, double to_rad) {
-  return std::remainder(to_rad - from_rad, 2.0 * std::numbers::pi);
+  return wrapped(to_rad - from_rad);
 }
 
 }  // namespace goshawk::movers

@@ -65,6 +65,7 @@ TEST(LeagueMovers, WhatCannotBeIsRefused) {
   EXPECT_EQ(make_league_movers({.count = 0}).code(), ErrorCode::invalid_input);
   EXPECT_EQ(make_league_movers({.count = 20'000}).code(), ErrorCode::invalid_input);
   EXPECT_EQ(make_league_movers({.divisor_min_s = 0.0}).code(), ErrorCode::invalid_input);
+  EXPECT_EQ(make_league_movers({.divisor_min_s = 1e-9}).code(), ErrorCode::invalid_input);
   EXPECT_EQ(make_league_movers({.speed_m_s = std::nan("")}).code(), ErrorCode::invalid_input);
 }
 

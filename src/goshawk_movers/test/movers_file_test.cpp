@@ -81,6 +81,7 @@ TEST_F(MoversFile, TheTrackOfAFileIsCheckedWithItsLine) {
 
 TEST_F(MoversFile, AMissingFileIsSaid) {
   EXPECT_EQ(read_movers(folder_ / "none.yaml").code(), ErrorCode::io_failed);
+  EXPECT_EQ(read_movers(folder_).code(), ErrorCode::io_failed);
 }
 
 TEST(MoversText, FaultsAreNamedWithTheirLine) {
@@ -95,6 +96,8 @@ TEST(MoversText, FaultsAreNamedWithTheirLine) {
               HasSubstr("size is outside"));
   EXPECT_THAT(said("movers:\n  - size: [1, .nan, 1]\n    still: {position: [0, 0, 0]}\n"),
               HasSubstr("'.nan' is not a number"));
+  EXPECT_THAT(said("movers:\n  - size: [1, +-1, 1]\n    still: {position: [0, 0, 0]}\n"),
+              HasSubstr("'+-1' is not a number"));
   EXPECT_THAT(said("movers: [\n"), HasSubstr("it is not valid YAML"));
   EXPECT_THAT(said("movers:\n  - {league: {count: 50}, kind: x}\n"), HasSubstr("no key beside it"));
   EXPECT_THAT(said("movers:\n  - league: {count: 1.5}\n"), HasSubstr("whole number"));

@@ -58,6 +58,10 @@ TEST_F(MemoryFile, ThatIsNotThereIsANavigatorThatHasDoneNothing) {
   EXPECT_TRUE(read->legs.empty());
 }
 
+TEST_F(MemoryFile, ThatIsAFolderCannotBeRead) {
+  EXPECT_EQ(read_memory(folder_).code(), ErrorCode::io_failed);
+}
+
 TEST_F(MemoryFile, ThatCannotBeWrittenIsSaid) {
   const auto status = write_memory(folder_ / "no" / "folder", in_flight());
   EXPECT_EQ(status.code(), ErrorCode::io_failed);

@@ -9,7 +9,7 @@
 
 namespace goshawk::obstacle_tracker {
 
-/// Who says what moves.
+/// Where obstacles come from.
 enum class Source {
   clouds,  // clouds on cloud_in
   movers   // boxes on movers: a simulator's truth, or another tracker's estimate
@@ -33,7 +33,7 @@ requires std::same_as<std::remove_const_t<Self>, ComponentConfig>
 void describe(Self& c, Visitor&& visit) {
   describe(c.tracker, visit);
   visit("source", c.source, "",
-        "who says what moves: clouds (on cloud_in) or movers (boxes on movers: a simulator's "
+        "where obstacles come from: clouds (on cloud_in) or movers (boxes on movers: a simulator's "
         "truth, or another tracker's estimate)",
         Anything{});
   visit("max_points", c.max_points, "", "larger clouds are refused", Range{1.0, 1e7});

@@ -8,6 +8,7 @@
 #include "goshawk/map_server/frame_tree.hpp"
 #include "goshawk/map_server/placement.hpp"
 #include "goshawk/map_server_messages/cloud.hpp"
+#include "goshawk/map_server_messages/transform.hpp"
 #include "goshawk/runtime/component.hpp"
 #include "goshawk/stage/intake.hpp"
 #include "messages.hpp"
@@ -55,7 +56,7 @@ class ObstacleTrackerComponent : public Component {
           Writers::one("movers"));
     }
     node.every(kReport_s, [this] { report(); });
-    reporter_.ready(fmt::format("tracks what moves within {:g} m, by {}", config_.tracker.range_m,
+    reporter_.ready(fmt::format("tracks what moves within {:g} m, from {}", config_.tracker.range_m,
                                 to_word(config_.source)));
   }
 
@@ -99,20 +100,8 @@ class ObstacleTrackerComponent : public Component {
   void on_frames(const tf2_msgs::msg::TFMessage& m, bool fixed) {
     for (const auto& t : m.transforms()) {
       if (t.child_frame_id() == conversions::kBodyFrame) continue;  // comes as odometry
-      const auto q = conversions::from_msg(t.transform().rotation());
-      const Vec3 p = conversions::from_msg(t.transform().translation());
-      if (!q || !is_finite(p)) {
-        reporter_.complain(fail(ErrorCode::invalid_input,
-                                fmt::format("the transform of '{}' is not finite, or its "
-                                            "quaternion is no rotation",
-                                            t.child_frame_id())));
-      } else if (fixed) {
-        frames_.set_static(t.header().frame_id(), t.child_frame_id(), {p, *q});
-      } else if (auto s = frames_.add(t.header().frame_id(), t.child_frame_id(),
-                                      conversions::to_ns(t.header().stamp()), {p, *q});
-                 !s) {
-        reporter_.complain(s.error());
-      }
+      const auto status = map_server::add_transform(t, fixed, frames_);
+      if (!status) reporter_.complain(status.error());
     }
   }
 

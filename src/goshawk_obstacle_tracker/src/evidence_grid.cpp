@@ -17,16 +17,25 @@ int modulo(int i, int n) {
   return r < 0 ? r + n : r;
 }
 
+// Cells along x, y and z.
+Index3 size_of(const EvidenceGrid::Parameters& p) {
+  const int across = 2 * int(std::ceil(p.range_m / p.cell_m)) + 3;
+  return {across, across, int(std::ceil(p.height_m / p.cell_m)) + 1};
+}
+
 }  // namespace
+
+double EvidenceGrid::cell_count(const Parameters& p) {
+  const Index3 size = size_of(p);
+  return double(size.x) * double(size.y) * double(size.z);
+}
 
 EvidenceGrid::EvidenceGrid(const Parameters& p)
     : cells_per_m_(1.0 / p.cell_m),
       settle_ms_(std::int32_t(1e3 * p.settle_s)),
       memory_ms_(std::int32_t(1e3 * p.memory_s)),
-      range_m_(p.range_m) {
-  const int across = 2 * int(std::ceil(p.range_m * cells_per_m_)) + 3;
-  const int high = int(std::ceil(p.height_m * cells_per_m_)) + 1;
-  size_ = {across, across, high};
+      range_m_(p.range_m),
+      size_(size_of(p)) {
   cells_.resize(std::size_t(size_.x) * std::size_t(size_.y) * std::size_t(size_.z));
 }
 

@@ -19,11 +19,22 @@ constexpr double kSignificant = 2.5;  // standard deviations of a velocity that 
 constexpr int kHitsNeeded = 4;
 constexpr double kLeastHalf_m = 0.1;  // a surface is seen: what is behind it is not
 constexpr double kRest_m = 0.25;
+constexpr double kMostCells = 32e6;  // 0.9 GB
+
+EvidenceGrid::Parameters grid_of(const Config& c) {
+  return {c.cell_m, c.range_m, c.height_m, c.settle_s, c.memory_s};
+}
 
 Status check(const Config& config) {
   ParameterFaults faults;
   describe(config, faults);
-  return faults.status();
+  if (auto status = faults.status(); !status) return status;
+  const double cells = EvidenceGrid::cell_count(grid_of(config));
+  if (cells <= kMostCells) return success();
+  return fail(ErrorCode::invalid_parameter,
+              fmt::format("range_m, height_m and cell_m need {:.0f} million cells, and {:.0f} "
+                          "million are the most: choose larger cells or a smaller range",
+                          1e-6 * cells, 1e-6 * kMostCells));
 }
 
 double gap_m(const Vec3& p, const Vec3& center, const Vec3& half) {
@@ -38,9 +49,7 @@ Result<ObstacleTracker> ObstacleTracker::create(const Config& config) {
 }
 
 ObstacleTracker::ObstacleTracker(const Config& c)
-    : config_(c),
-      grid_({c.cell_m, c.range_m, c.height_m, c.settle_s, c.memory_s}),
-      clusters_(c.cell_m, c.vertical_gap_m) {}
+    : config_(c), grid_(grid_of(c)), clusters_(c.cell_m, c.vertical_gap_m) {}
 
 void ObstacleTracker::reset() {
   const std::uint64_t next_id = next_id_;
@@ -61,7 +70,10 @@ Status ObstacleTracker::check(const Scan& s) const {
   if (!is_finite(place) || place.cwiseAbs().maxCoeff() > kFarthestPlace_m) {
     return wrong("the sensor's place is not finite, or beyond 1e6 m");
   }
-  if (first_ns_ && s.stamp_ns <= stamp_ns_) {
+  if (first_ns_ && s.stamp_ns == stamp_ns_) {
+    return wrong("a scan has the same stamp as the one before it");
+  }
+  if (first_ns_ && s.stamp_ns < stamp_ns_) {
     return wrong(fmt::format("a scan is {:.3f} s older than the one before it",
                              1e-9 * double(stamp_ns_ - s.stamp_ns)));
   }

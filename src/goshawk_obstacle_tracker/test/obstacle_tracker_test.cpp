@@ -17,6 +17,8 @@ TEST(ObstacleTracker, ParametersOutOfRangeAreRefusedByName) {
   EXPECT_THAT(ObstacleTracker::create({.cell_m = 0.0}).error().message, HasSubstr("cell_m"));
   EXPECT_THAT(ObstacleTracker::create({.horizon_s = std::nan("")}).error().message,
               HasSubstr("horizon_s"));
+  const Config huge{.range_m = 50.0, .height_m = 50.0, .cell_m = 0.1};
+  EXPECT_THAT(ObstacleTracker::create(huge).error().message, HasSubstr("504 million cells"));
 }
 
 TEST(ObstacleTracker, ScansThatCannotBeAreRefusedAndChangeNothing) {
@@ -31,6 +33,8 @@ TEST(ObstacleTracker, ScansThatCannotBeAreRefusedAndChangeNothing) {
   ASSERT_TRUE(tracker.add({1'000'000'000, points, kSensor, {}}));
   EXPECT_THAT(tracker.add({900'000'000, points, kSensor, {}}).error().message,
               HasSubstr("0.100 s older"));
+  EXPECT_THAT(tracker.add({1'000'000'000, points, kSensor, {}}).error().message,
+              HasSubstr("same stamp"));
   EXPECT_EQ(tracker.time_ns(), 1'000'000'000);
 }
 

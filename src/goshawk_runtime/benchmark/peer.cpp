@@ -6,10 +6,10 @@
 //   latch BYTES             latches a message and stays; prints the growth of its memory
 //   fetch                   waits for the latched message; prints the milliseconds from start
 //   hear                    reads a state topic, reliable, until it is ended
-//   state COUNT QUALITY [PID] publishes COUNT states of 1 KB at 500 Hz, reliable or best_effort;
-//   once
-//                           `hear`, of that process id, is matched, it is stopped meanwhile; prints
-//                           how long the calls took in us
+//   state COUNT QUALITY [PID]
+//                           publishes COUNT states of 1 KB at 500 Hz, reliable or best_effort, and
+//                           prints how long the calls took in us; with PID only once a reader is
+//                           matched, and that process is stopped meanwhile
 
 #include <signal.h>
 #include <unistd.h>

@@ -265,8 +265,7 @@ std::string Context::Impl::why_no_endpoint() const {
 }
 
 Status Context::Impl::open_ros_graph(const ContextOptions& options) {
-  // ROS 2's nodes have no certificates of Goshawk's authority: with permissions nobody would read
-  // it.
+  // With permissions nobody would read it: ROS 2's nodes have no certificates of this authority.
   if (options.ros_graph == RosGraphLayout::off || has_permissions) return success();
   const auto type = raw_message_type(kRosDiscoveryType);
   auto* topic = wire_topic(kRosDiscoveryTopic, type.impl().support);

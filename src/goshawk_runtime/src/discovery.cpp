@@ -124,7 +124,7 @@ void RosNodesListener::on_data_available(dds::DataReader* reader) {
     if (!info.valid_data) continue;
     auto told = decode_node_names(bytes);
     const auto& writer = info.sample_identity.writer_guid();
-    // Nobody is heard about others.
+    // Each participant speaks for itself alone.
     if (!told ||
         !std::ranges::equal(writer.guidPrefix.value, std::span(told->participant).first<12>()))
       continue;

@@ -21,7 +21,8 @@ void RosGraph::open(eprosima::fastdds::dds::DomainParticipant& participant,
   const std::lock_guard lock(mutex_);
   participant_ = gid_of(participant.guid());
   writer_ = writer;
-  layout_ = layout_ == RosGraphLayout::automatic ? layout : layout_;
+  // A peer of Iron may have been met already: only a choice overrules that.
+  if (layout != RosGraphLayout::automatic) layout_ = layout;
   named_ = {named.begin(), named.end()};
   publish();
 }

@@ -178,7 +178,7 @@ TEST(RosNodes, AreListedForWhoWatches) {
     peer.say(message_of(peer.gid(), {"probe", "_hidden", "talker"}));
     EXPECT_TRUE(until([&] { return !nodes_of_ros(*context).empty(); }));
     EXPECT_THAT(nodes_of_ros(*context), ElementsAre("/ros/probe", "/ros/talker"));
-    // Nobody is heard about others, and what is no such message changes nothing.
+    // Each participant speaks for itself alone, and a malformed message changes nothing.
     Gid16 other = peer.gid();
     other[11] ^= 1;
     peer.say(message_of(other, {"false"}));

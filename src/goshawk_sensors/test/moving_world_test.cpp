@@ -1,4 +1,4 @@
-// Rays among things that move: each sees its world as it is at its own time.
+// Rays among things that move: each meets them where they are when it is fired.
 #include "goshawk/sensors/moving_world.hpp"
 
 #include <gtest/gtest.h>

@@ -35,6 +35,10 @@ void describe(Self& c, Visitor&& visit) {
 }
 
 std::vector<Mover> read(const Config& config) {
+  if (config.movers_file.empty()) {
+    throw StartupFault(fail(ErrorCode::invalid_parameter,
+                            "movers_file is empty: name a file of movers (docs/movers.md)"));
+  }
   auto movers = read_movers(config.movers_file);
   if (!movers) throw StartupFault(movers.error());
   return *std::move(movers);

@@ -95,6 +95,7 @@ TEST_F(MoversComponentTest, AFileThatIsWrongEndsTheStartWithItsLine) {
   };
   EXPECT_THAT(create(file_), testing::HasSubstr("line 2: a mover needs one of"));
   EXPECT_THAT(create("none.yaml"), testing::HasSubstr("cannot be read"));
+  EXPECT_THAT(create("''"), testing::HasSubstr("movers_file is empty"));
 }
 
 }  // namespace

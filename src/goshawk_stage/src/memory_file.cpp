@@ -65,6 +65,7 @@ Status replace_file(const std::string& path, const MemoryBytes& bytes) {
 
 Result<MemoryBytes> read_file(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
+  file.peek();  // a folder can be opened, but not read
   if (file) return MemoryBytes(std::istreambuf_iterator<char>(file), {});
   const std::string why = std::strerror(errno);
   std::error_code error;  // of a folder that may not be looked into

@@ -18,8 +18,8 @@ struct LeagueMovers {
 };
 
 /// Cubes first (kind "cube"), then "pillar" and "bar", in the order in which they are drawn.
-/// @return invalid_input for a count outside of 1 to 10,000, divisors that are not above 0 and in
-/// order, or a speed that is negative or not finite
+/// @return invalid_input for a count outside of 1 to 10,000, divisors below 0.01 s or out of order,
+/// or a speed that is negative or not finite
 Result<std::vector<Mover>> make_league_movers(const LeagueMovers& world);
 
 }  // namespace goshawk::movers

@@ -7,7 +7,7 @@
 
 namespace goshawk::obstacle_tracker {
 
-/// What sensors said of each cell around the vehicle: free, and since when hit. A cell that was
+/// What was measured of each cell around the vehicle: free, and since when hit. A cell that was
 /// seen free and is hit now holds something that came; one that is hit for long, what stands.
 ///
 /// The window follows the vehicle: cells are addressed modulo its size, and those that enter are
@@ -23,6 +23,8 @@ class EvidenceGrid {
   };
 
   explicit EvidenceGrid(const Parameters& parameters);
+  /// How many cells a grid has with these parameters.
+  static double cell_count(const Parameters& parameters);
 
   /// Begins a scan. @param center_map [m] of the window @param time_ms never below that before
   void begin(const Vec3& center_map, std::int32_t time_ms);

@@ -38,7 +38,7 @@ struct TrackedObstacle {
 /// The same scans give the same answers.
 class ObstacleTracker {
  public:
-  /// @return invalid_parameter with every fault
+  /// @return invalid_parameter with every fault, or for a grid of more than 32 million cells
   static Result<ObstacleTracker> create(const Config& config);
 
   /// @return invalid_input for a scan whose lists disagree, or that is not newer than the one
@@ -63,8 +63,8 @@ class ObstacleTracker {
     double time_s = 0.0, seen_s = 0.0;   // of the filter, of the last cluster
     double birth_s = 0.0, rest_s = 0.0;  // first cluster, begin of rest
     int hits = 1;
-    int points = 0, standing_free = 0;
-    bool taken = false;  // in this scan
+    std::int64_t points = 0, standing_free = 0;  // of all its clusters
+    bool taken = false;                          // in this scan
 
     Vec3 position() const { return {axes[0].position, axes[1].position, axes[2].position}; }
     Vec3 velocity() const { return {axes[0].velocity, axes[1].velocity, axes[2].velocity}; }

@@ -27,7 +27,8 @@ struct LabResult {
   int scans = 0;
 };
 
-/// @return what a sensor, a world or the tracker says; the same case gives the same figures
+/// @return the failure of the sensor, the world or the tracker, if there is one; the same case
+/// gives the same figures
 Result<LabResult> run_lab(const LabCase& lab_case);
 
 /// os0_128 with half of its columns: 65,536 rays a scan at 10 Hz.

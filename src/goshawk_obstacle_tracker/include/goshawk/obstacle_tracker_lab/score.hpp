@@ -15,7 +15,7 @@ namespace goshawk::obstacle_tracker {
 /// [s] ahead at which bounds are judged
 inline constexpr std::array<double, 4> kHorizons_s{0.0, 0.5, 1.0, 1.5};
 
-/// What a tracker is worth against the truth. Shares are NaN where nothing counts.
+/// How a tracker compares with the truth. Shares are NaN if there is nothing to count.
 struct Figures {
   double recall = 0.0;          // share of the visible moving things that were told
   double precision = 0.0;       // share of what was told that is a thing

@@ -8,7 +8,8 @@
 
 namespace goshawk::sensors {
 
-/// What moves, seen at each ray's own time. Not to be used in two threads at once.
+/// What moves: each ray meets it where it is when the ray is fired. Not to be used in two threads
+/// at once.
 class MovingWorld : public World {
  public:
   /// @param start_ns stamp at which the movers' time is 0
