@@ -51,7 +51,7 @@ Waypoint waypoint_of(const YAML::Node& node) {
   for (const auto& entry : node) {
     const std::string key = entry.first.IsScalar() ? entry.first.Scalar() : "";
     if (std::ranges::find(seen, key) != seen.end()) {
-      throw LineFault{line_of(entry.first), fmt::format("{} is there twice", key)};
+      throw LineFault{line_of(entry.first), fmt::format("{} is specified twice", key)};
     }
     seen.push_back(key);
     if (key == "position") {
@@ -118,7 +118,7 @@ void check_columns(const std::vector<std::string>& columns, int line) {
                                         name, field_names())};
     }
     if (std::ranges::count(columns, name) > 1) {
-      throw LineFault{line, fmt::format("column {} is there twice", name)};
+      throw LineFault{line, fmt::format("column {} is specified twice", name)};
     }
   }
   for (const std::string_view axis : kAxes) {

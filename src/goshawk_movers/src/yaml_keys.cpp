@@ -55,7 +55,7 @@ YamlKeys::YamlKeys(const YAML::Node& map, std::string what,
                                                         fmt::join(keys, ", "))};
     }
     if (std::ranges::find(seen, key) != seen.end()) {
-      throw LineFault{line_of(entry.first), fmt::format("{} is there twice", key)};
+      throw LineFault{line_of(entry.first), fmt::format("{} is specified twice", key)};
     }
     seen.push_back(key);
   }

@@ -106,7 +106,7 @@ TEST(MoversText, FaultsAreNamedWithTheirLine) {
   EXPECT_THAT(said(with_walk("{points: [[0, 0, 0], [1, 0, 0]], speed_m_s: 1, repeat: always}")),
               HasSubstr("repeat is not one of"));
   EXPECT_THAT(said(with_walk("{points: [[0, 0, 0], [1, 0, 0]], speed_m_s: 1, speed_m_s: 2}")),
-              HasSubstr("speed_m_s is there twice"));
+              HasSubstr("speed_m_s is specified twice"));
 }
 
 TEST(MoversText, MotionsThatCannotBeAreRefused) {
