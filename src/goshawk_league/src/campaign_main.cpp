@@ -67,7 +67,8 @@ Result<Arguments> parse(int argc, char** argv) {
       a.json = true;
     } else if (i + 1 >= argc || !set(word, argv[i + 1], a)) {
       return fail(ErrorCode::invalid_parameter,
-                  fmt::format("'{} {}' is not understood", word, i + 1 < argc ? argv[i + 1] : ""));
+                  fmt::format("'{} {}' is no option with a valid value", word,
+                              i + 1 < argc ? argv[i + 1] : ""));
     } else {
       ++i;
     }
@@ -101,7 +102,7 @@ json to_json(const LiveCase& live, bool reachable, const Outcome& o) {
            std::vector<std::string>(o.events.end() - std::ptrdiff_t(kept), o.events.end())}};
 }
 
-/// A flight that cannot be made is no failure of the vehicle's, but is told.
+/// A flight that cannot be made is no failure of the vehicle's; its line says why.
 json fly_one(std::uint64_t number, const closed_loop::Setup& vehicle, double latency_s) {
   auto live = make_live_case(number, vehicle);
   if (!live) return {{"number", number}, {"not_flown", live.error().message}};
@@ -113,14 +114,22 @@ json fly_one(std::uint64_t number, const closed_loop::Setup& vehicle, double lat
   return to_json(*live, *reachable, *outcome);
 }
 
-/// What the file has; a line that was cut off is flown again.
+bool is_result(const json& r) {
+  const auto has = [&r](const char* key, auto is) { return r.contains(key) && (r[key].*is)(); };
+  if (!r.is_object() || !has("number", &json::is_number_unsigned)) return false;
+  return r.contains("not_flown") ||
+         (has("reachable", &json::is_boolean) && has("arrived", &json::is_boolean) &&
+          has("touched", &json::is_boolean) && has("code", &json::is_string) &&
+          r.contains("max_error_m") && r.contains("clearance_m"));
+}
+
+/// What the file has; a line that was cut off, or is no result, is flown again.
 std::map<std::uint64_t, json> flown_before(const std::string& file) {
   std::map<std::uint64_t, json> flown;
   std::ifstream in(file);
   for (std::string line; std::getline(in, line);) {
     json result = json::parse(line, nullptr, false);
-    const bool whole = result.is_object() && result.contains("number");
-    if (!whole || !result["number"].is_number_unsigned()) continue;
+    if (!is_result(result)) continue;
     const auto number = result["number"].get<std::uint64_t>();
     flown[number] = std::move(result);
   }
